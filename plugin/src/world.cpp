@@ -461,7 +461,7 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
     return onWorld(__func__, world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, world->unit);
         bool acts = false;
-        const uint32_t count = w.burn().ignite(def, &acts);
+        const uint32_t count = w.ignite(def, &acts);
         if (texels) *texels = count;
         if (acts) return FW_OK;
         // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a
@@ -644,7 +644,7 @@ FwResult FW_CALL fwWorld_RequestBurn(FwWorld* world, FwBurnableMeshId id) {
 
 FwResult FW_CALL fwWorld_FetchBurn(FwWorld* world, FwBurnableMeshId id, void* buffer,
                                    uint64_t* size) {
-    return fetch(__func__, world, "baked burn", buffer, size, &world::BurnSystem::fetchBurn, id);
+    return fetch(__func__, world, "baked burn", buffer, size, &world::QuerySystem::fetchBurn, id);
 }
 
 FwResult FW_CALL fwWorld_CreateBurn(FwWorld* world, const void* bytes, uint64_t size,

@@ -93,6 +93,16 @@ class HandlePool {
         FW_ASSERT(index < slots_.size(), "slot %u of %zu", index, slots_.size());
         return Id{index + 1, slots_[index].generation};
     }
+    // Of any number: null, or an id that every call refuses, where no value has that slot.
+    Value* findSlot(uint32_t index) noexcept {
+        return index < slots_.size() ? at(index) : nullptr;
+    }
+    const Value* findSlot(uint32_t index) const noexcept {
+        return const_cast<HandlePool*>(this)->findSlot(index);
+    }
+    Id findId(uint32_t index) const noexcept {
+        return index < slots_.size() ? idOf(index) : Id{index + 1, 0};
+    }
     // Live values with their slots, in order: for (auto [slot, value] : pool.entries()). A loop may
     // destroy the value that it is at. Values that own what they point to are given as that.
     [[nodiscard]] auto entries() noexcept { return Entries<HandlePool>{*this}; }

@@ -20,6 +20,12 @@
 
 namespace fw::save {
 
+constexpr uint32_t magicWord(const char (&magic)[5]) noexcept {
+    uint32_t word = 0;
+    for (int i = 3; i >= 0; --i) word = word << 8 | uint32_t(uint8_t(magic[i]));
+    return word;
+}
+
 template <class Derived>
 class Archive {
  public:
@@ -180,5 +186,24 @@ class Reader : public core::Reader, public Archive<Reader> {
  private:
     std::pmr::vector<uint32_t> values_;
 };
+
+// What a file begins with. Throws where it begins otherwise.
+inline void readHead(core::Reader& reader, const char (&magic)[5], uint32_t version) {
+    uint32_t word = 0, found = 0;
+    reader.number(word);
+    if (word != magicWord(magic))
+        core::fail(FW_ERROR_BAD_DATA, "The %s does not begin with \"%s\".", reader.name(), magic);
+    reader.number(found);
+    if (found != version)
+        core::fail(
+            FW_ERROR_BAD_DATA,
+            "The %s has format version %u; this library reads version %u alone. Read it with "
+            "the %s library that wrote it.",
+            reader.name(), found, version, found < version ? "older" : "newer");
+}
+inline void writeHead(core::Writer& writer, const char (&magic)[5], uint32_t version) {
+    writer.number(magicWord(magic));
+    writer.number(version);
+}
 
 }  // namespace fw::save

@@ -1,5 +1,7 @@
 #include "save/plane.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -79,6 +81,7 @@ class Encoder {
  public:
     explicit Encoder(std::pmr::vector<std::byte>& out) : out_(out) {}
     uint32_t bit(Chance& chance, uint32_t value) {
+        FW_ASSERT(range_ >= kTop && value <= 1, "range %u", range_);
         const uint32_t bound = (range_ >> kChanceBits) * chance;
         if (value == 0) {
             range_ = bound;
@@ -212,6 +215,8 @@ uint32_t unfolded(uint32_t value) noexcept { return (value >> 1) ^ (0u - (value 
 
 void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask,
                 std::pmr::vector<std::byte>& out) {
+    FW_ASSERT(width > 0 && (mask.empty() || mask.size() == values.size()),
+              "%zu cells in rows of %u", values.size(), width);
     Encoder coder(out);
     const Neighbours around(values, width, mask);
     std::array<Models, kContexts> models;
@@ -231,6 +236,8 @@ void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask
 
 bool readPlane(std::span<const std::byte> bytes, uint32_t width, PlaneMask mask,
                std::span<uint32_t> values) {
+    FW_ASSERT(width > 0 && (mask.empty() || mask.size() == values.size()),
+              "%zu cells in rows of %u", values.size(), width);
     const Neighbours around(values, width, mask);
     const auto none = [](uint8_t cell) { return cell == 0; };
     if (values.empty() || (!mask.empty() && std::all_of(mask.begin(), mask.end(), none)))

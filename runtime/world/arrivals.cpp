@@ -47,12 +47,12 @@ FwQueryId QuerySystem::requestArrival(FwBurnableMeshId id, const float position[
     // A forecast does not see water dry, for one: it is repeated every second.
     if (burn_.isActive(object) && context_.clock.tick > gpu::kTicksPerSecond)
         query.sinceTick = context_.clock.tick - gpu::kTicksPerSecond;
-    return state_.queries.create(query);
+    return queries_.create(query);
 }
 
 // Requests the state of objects with questions that no forecast answers.
 void QuerySystem::requestForecasts() noexcept {
-    for (auto [i, query] : state_.queries.entries()) {
+    for (auto [i, query] : queries_.entries()) {
         if (!query.isArrival) continue;
         const Object& object = *scene_.objects.get(query.object);
         if (object.play.burn1 != 0) continue;  // its burn tells
@@ -67,6 +67,8 @@ void QuerySystem::requestForecasts() noexcept {
 void QuerySystem::beginForecast(Object& object, const gpu::BurnMap& map,
                                 const gpu::Readback& readback) noexcept {
     Forecast& forecast = *object.forecast;
+    FW_ASSERT(map.ticks.size() == scene_.domainOf(object).texelCount(), "%zu texels",
+              map.ticks.size());
     forecast.pending = false;
     const components::DriveInput drive = wind_.driveInput(object, context_.clock.tick);
     components::Latch latch = object.latch;
@@ -80,7 +82,7 @@ void QuerySystem::beginForecast(Object& object, const gpu::BurnMap& map,
     input.window = records.timing.window;
     input.state = map.ticks;
     input.now = readback.endTick;
-    input.parts = (exchange_.state().book.flags & FW_WORLD_CONTACT) != 0;
+    input.parts = (exchange_.transfer().flags & FW_WORLD_CONTACT) != 0;
     mesh::beginArrivals(forecast.arrivals, input);  // capacity was reserved
     forecast.began = true;
     forecast.changes = forecast.pendingChanges;
@@ -93,6 +95,7 @@ void QuerySystem::runForecasts() noexcept {
     uint32_t tiles = context_.def.arrivalTiles;
     for (size_t i = 0, count = forecasts_.size(); i < count && tiles > 0; ++i) {
         const size_t at = (nextForecast_ + i) % count;
+        FW_ASSERT(scene_.objectAt(forecasts_[at]).forecast, "slot %u", forecasts_[at]);
         tiles = mesh::runArrivals(scene_.objectAt(forecasts_[at]).forecast->arrivals, tiles);
         if (tiles == 0) nextForecast_ = (at + 1) % count;
     }
@@ -132,7 +135,7 @@ bool QuerySystem::fetchArrival(FwQueryId id, FwArrivalState& state) {
     }
     state.distance = query.distance;
     scene_.texelPosition(object, query.texel, state.position);
-    state_.queries.destroy(id);
+    queries_.destroy(id);
     return true;
 }
 

@@ -35,6 +35,8 @@ size_t BoxGrid::hashOf(const int (&at)[3], uint32_t level) noexcept {
 }
 
 uint32_t BoxGrid::findCell(const int (&at)[3], uint32_t level) const noexcept {
+    FW_ASSERT(std::has_single_bit(cells_.size()) && used_ < cells_.size(), "%u of %zu cells", used_,
+              cells_.size());
     const size_t mask = cells_.size() - 1;
     for (size_t i = hashOf(at, level) & mask;; i = (i + 1) & mask) {
         const Cell& cell = cells_[i];
@@ -45,6 +47,7 @@ uint32_t BoxGrid::findCell(const int (&at)[3], uint32_t level) const noexcept {
 }
 
 void BoxGrid::link(uint32_t slot, uint32_t cell) noexcept {
+    FW_ASSERT(cell < cells_.size() && cells_[cell].level < kLevels, "cell %u", cell);
     Entry& entry = entries_[slot];
     entry.cell = cell;
     entry.previous = kNone;
@@ -123,6 +126,7 @@ void BoxGrid::place(uint32_t slot, const mesh::Box& box, uint32_t margin) {
 
 void BoxGrid::remove(uint32_t slot) noexcept {
     if (!has(slot)) return;
+    FW_ASSERT(levels_[cells_[entries_[slot].cell].level].count > 0, "box %u", slot);
     unlink(slot);
     --levels_[cells_[entries_[slot].cell].level].count;
     entries_[slot].cell = kNoCell;

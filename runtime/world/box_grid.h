@@ -2,6 +2,7 @@
 // power of two of their sizes. A box is in one cell, that of its middle, so a move costs the same
 // however many boxes there are. Not who they belong to.
 #pragma once
+#include "core/assert.h"
 #include "mesh/exchange_tiles.h"
 
 #include <algorithm>
@@ -30,6 +31,7 @@ class BoxGrid {
         return slot < entries_.size() && entries_[slot].cell != kNoCell;
     }
     [[nodiscard]] const mesh::Box& boxOf(uint32_t slot) const noexcept {
+        FW_ASSERT(has(slot), "box %u", slot);
         return entries_[slot].box;
     }
     // Calls visit(slot) for every box whose gap to `box` is at most the larger of `margin` and its

@@ -4,8 +4,8 @@
 #include "mesh/hold.h"
 #include "save/plane.h"
 #include "world/burn_system.h"
-#include "world/query_system.h"
-#include "world/save.h"
+#include "world/geometry.h"
+#include "world/saved_object.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,15 +63,16 @@ void BurnSystem::planBreaks(uint64_t end) noexcept {
             continue;
         const uint64_t off = uint64_t(object->slot) * gpu::kStepTicks;
         if ((context_.clock.tick + off) / kBreaksTicks == (end + off) / kBreaksTicks) continue;
-        const uint32_t slot = object->slot;  // capacity was reserved at their creation
-        queries_.addBurnMap(slot);
-        frame_.breaks.push_back(slot);
+        FW_ASSERT(frame_.breaks.size() < frame_.breaks.capacity(), "%zu objects",
+                  frame_.breaks.size());
+        frame_.breaks.push_back(object->slot);
     }
 }
 
 void BurnSystem::commitBreaks(uint64_t frameIndex) noexcept {
     for (const uint32_t slot : frame_.breaks) {
         Breaks& breaks = *scene_.objectAt(slot).breaks;
+        FW_ASSERT(breaks.lookCount < breaks.looks.size(), "%u looks", breaks.lookCount);
         breaks.looks[breaks.lookCount++] = frameIndex;
     }
 }
@@ -105,10 +106,8 @@ void BurnSystem::markBearers(const Object& object) noexcept {
     }
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
         if (!domain.real(i)) continue;
-        const mesh::TexelPosition& p = domain.texels[i];
-        const uint16_t units[3] = {p.x, p.y, p.z};
         float at[3];
-        for (int k = 0; k < 3; ++k) at[k] = domain.origin[k] + domain.quantum * float(units[k]);
+        restPlace(domain, i, at);
         for (uint32_t n = 0; n < breaks.pinCount; ++n) {
             const FwPin& pin = breaks.pins[n];
             float along = 0, length = 0, away = 0;
@@ -133,6 +132,8 @@ void BurnSystem::findBreaks(Object& object, std::span<const uint32_t> ticks,
     const mesh::BurnDomain& domain = scene_.domainOf(object);
     Breaks& breaks = *object.breaks;
     if (ticks.size() != domain.texelCount()) return;
+    FW_ASSERT(breaks.lost.size() == ticks.size(), "%zu of %zu texels", breaks.lost.size(),
+              ticks.size());
     std::array<uint32_t, gpu::kMaterialsPerObject> holes{};
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         holes[i] = components::holeTicks(object.data, i, context_.def.paceFactor);
@@ -159,7 +160,7 @@ void BurnSystem::findBreaks(Object& object, std::span<const uint32_t> ticks,
     const bool much = breaks.share > 0 && double(gone) >= double(breaks.share) * double(all);
     if (much && !breaks.shareReported && tells) {
         float middle[3], place[3];
-        for (int i = 0; i < 3; ++i) middle[i] = (domain.boundsLow[i] + domain.boundsHigh[i]) * 0.5f;
+        middleOf(domain, middle);
         components::toWorld(object.data.pose, middle, place);
         context_.raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_SHARE, *tells, place,
                        float(double(gone) * scale));
@@ -190,6 +191,7 @@ void BurnSystem::onBurnMap(Object& object, const gpu::BurnMap& map,
                            const gpu::Readback& readback) noexcept {
     if (!object.breaks) return;
     Breaks& breaks = *object.breaks;
+    FW_ASSERT(breaks.lookCount <= breaks.looks.size(), "%u looks", breaks.lookCount);
     const auto end = breaks.looks.begin() + breaks.lookCount;
     const auto later = std::upper_bound(breaks.looks.begin(), end, readback.frameIndex);
     if (later == breaks.looks.begin()) return;

@@ -29,15 +29,8 @@ bool waitsForFire(const Object& object, const gpu::ObjectCounters& now) noexcept
 }  // namespace
 
 BurnSystem::BurnSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
-                       RoomSystem& rooms, ExchangeSystem& exchange, EmitterSystem& emitters,
-                       QuerySystem& queries)
-    : context_(context),
-      scene_(scene),
-      wind_(wind),
-      rooms_(rooms),
-      exchange_(exchange),
-      emitters_(emitters),
-      queries_(queries) {
+                       RoomSystem& rooms, ExchangeSystem& exchange)
+    : context_(context), scene_(scene), wind_(wind), rooms_(rooms), exchange_(exchange) {
     frame_.steps.reserve(kMaxSteps);
 }
 
@@ -53,8 +46,12 @@ Stimulus& BurnSystem::stimulusOf(Object& object, uint64_t frameIndex) noexcept {
     if (object.stimulusAt == mesh::kNone) {
         object.stimulusAt = uint32_t(state_.stimuli.size());
         ++object.stimuli;
-        state_.stimuli.push_back({frameIndex, object.slot});  // capacity was reserved
+        FW_ASSERT(state_.stimuli.size() < state_.stimuli.capacity(), "%zu stimuli",
+                  state_.stimuli.size());
+        state_.stimuli.push_back({frameIndex, object.slot});
     }
+    FW_ASSERT(object.stimulusAt < state_.stimuli.size(), "%u of %zu stimuli", object.stimulusAt,
+              state_.stimuli.size());
     return state_.stimuli[object.stimulusAt];
 }
 
@@ -69,17 +66,19 @@ void BurnSystem::recordIgnition(Object& object, Stimulus& stimulus, uint32_t tex
     object.ignites = true;
 }
 
-void BurnSystem::commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept {
-    for (size_t i = state_.stimuli.size(); i-- > 0 && state_.stimuli[i].frameIndex == frameIndex;)
+void BurnSystem::commitStimuli(const HostFrame& frame) noexcept {
+    for (size_t i = state_.stimuli.size(); i-- > 0 && state_.stimuli[i].frameIndex == frame.index;)
         scene_.objectAt(state_.stimuli[i].slot).stimulusAt = mesh::kNone;
     InFlightFrame note;
-    note.frameIndex = frameIndex;
-    note.end = time.after.tick;
+    note.frameIndex = frame.index;
+    note.end = frame.end();
     note.roomsStirred = rooms_.state().stirred;
-    note.steps = time.steps;
+    note.steps = frame.time.steps;
     note.stirs = !frame_.events.empty();
     note.never = keepsAwake();
-    state_.frameNotes.push_back(note);  // capacity was reserved
+    FW_ASSERT(state_.frameNotes.size() < state_.frameNotes.capacity(), "%zu frames in flight",
+              state_.frameNotes.size());
+    state_.frameNotes.push_back(note);
 }
 
 // With the readback of a frame, before anything else of it.
@@ -104,6 +103,7 @@ void BurnSystem::onFrameDone(uint64_t frameIndex) noexcept {
         ++taken;
         Object& object = scene_.objectAt(one.slot);
         BurnLifecycle& lifecycle = object.lifecycle;
+        FW_ASSERT(object.stimuli > 0, "burnable mesh %u", object.id.index1);
         if (--object.stimuli == 0) object.ignites = false;
         if (one.from1 != 0)
             continueBurn(object, one.given ? *one.given : scene_.objectAt(one.from1 - 1).lifecycle);
@@ -174,47 +174,46 @@ void BurnSystem::applyCounters(const gpu::Readback& readback) noexcept {
             endPlay(object, readback.frameIndex, now.playsUntil);  // others' fire came
         applyEnergy(object, readback.endTick);
         exchange_.onCounters(object, readback);
-        float place[3];
-        if (now.burning > 0) object.lifecycle.lastBurning = readback.endTick;
+        BurnLifecycle& lifecycle = object.lifecycle;
+        const auto raise = [&](uint32_t type, uint32_t tag, float value) {
+            float place[3];
+            components::toWorld(object.data.pose, lifecycle.ignitionPoint, place);
+            context_.raise(type, &object, tag, readback.frameIndex, place, value);
+        };
+        if (now.burning > 0) lifecycle.lastBurning = readback.endTick;
         countFlames(object, before, readback.endTick);
 
         const bool freshFire = now.ignited > before.ignited || now.burning > 0;
-        if (!object.lifecycle.sawFire && now.ignited > 0 && freshFire) {
-            object.lifecycle.sawFire = true;
-            object.lifecycle.active = true;
+        if (!lifecycle.sawFire && now.ignited > 0 && freshFire) {
+            lifecycle.sawFire = true;
+            lifecycle.active = true;
             const uint64_t tick =
-                object.lifecycle.ignitionKnown ? object.lifecycle.firstIgnition : now.lastIgnition;
-            components::toWorld(object.data.pose, object.lifecycle.ignitionPoint, place);
-            context_.raise(FW_EVENT_IGNITED, &object, 0, readback.frameIndex, place,
-                           float(double(tick) / gpu::kTicksPerSecond));
+                lifecycle.ignitionKnown ? lifecycle.firstIgnition : now.lastIgnition;
+            raise(FW_EVENT_IGNITED, 0, float(double(tick) / gpu::kTicksPerSecond));
         }
         // A few late arrivals come with any change of the wind; only many of them are a limit.
         const uint32_t limit = std::max(kReportedClampStep, now.ignited / 50);
-        if (now.lateClamps >= object.lifecycle.clampsReported + limit) {
-            components::toWorld(object.data.pose, object.lifecycle.ignitionPoint, place);
-            context_.raise(FW_EVENT_FRONT_LIMITED, &object, 0, readback.frameIndex, place,
-                           float(now.lateClamps - object.lifecycle.clampsReported));
-            object.lifecycle.clampsReported = now.lateClamps;
+        if (now.lateClamps >= lifecycle.clampsReported + limit) {
+            raise(FW_EVENT_FRONT_LIMITED, 0, float(now.lateClamps - lifecycle.clampsReported));
+            lifecycle.clampsReported = now.lateClamps;
         }
         const bool settled = now.burning == 0 && now.frontTiles == 0 &&
-                             readback.endTick >= object.lifecycle.lastStimulus + kSettleTicks &&
+                             readback.endTick >= lifecycle.lastStimulus + kSettleTicks &&
                              readback.endTick >= uint64_t(now.lastIgnition) + kSettleTicks;
-        if (settled && object.lifecycle.active) {
-            object.lifecycle.active = false;
-            if (object.lifecycle.sawFire) {
+        if (settled && lifecycle.active) {
+            lifecycle.active = false;
+            if (lifecycle.sawFire) {
                 const float fraction =
-                    object.texels ? float(object.lifecycle.maxIgnited) / float(object.texels)
-                                  : 0.0f;
-                components::toWorld(object.data.pose, object.lifecycle.ignitionPoint, place);
+                    object.texels ? float(lifecycle.maxIgnited) / float(object.texels) : 0.0f;
                 // At least half of its last flames left fuel behind.
-                const BurnLifecycle& end = object.lifecycle;
-                const bool out = end.wentOut > 0 && end.wentOut >= end.flames - end.wentOut;
-                context_.raise(out ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object,
-                               out ? end.outCause : 0u, readback.frameIndex, place, fraction);
+                const bool out = lifecycle.wentOut > 0 &&
+                                 lifecycle.wentOut >= lifecycle.flames - lifecycle.wentOut;
+                raise(out ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT,
+                      out ? lifecycle.outCause : 0u, fraction);
             }
-            object.lifecycle.sawFire = false;
-            object.lifecycle.ignitionKnown = false;
-            object.lifecycle.flames = object.lifecycle.wentOut = object.lifecycle.outCause = 0;
+            lifecycle.sawFire = false;
+            lifecycle.ignitionKnown = false;
+            lifecycle.flames = lifecycle.wentOut = lifecycle.outCause = 0;
         }
     }
     state_.counts.lateClamps = clamps;
@@ -264,6 +263,7 @@ void BurnSystem::applyEnergy(Object& object, uint32_t endTick) noexcept {
     const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
     const uint64_t steps = heatStepsBefore(endTick);
     if (steps == object.lifecycle.heatSteps) return;
+    FW_ASSERT(context_.def.paceFactor > 0, "pace %g", double(context_.def.paceFactor));
     const double seconds = double(steps - object.lifecycle.heatSteps) * gpu::kHeatSteps / 32;
     if (!std::exchange(object.carried, false))
         object.lifecycle.power = now.burning == 0
@@ -272,6 +272,61 @@ void BurnSystem::applyEnergy(Object& object, uint32_t endTick) noexcept {
                                              seconds / double(context_.def.paceFactor));
     object.lifecycle.energy = energy;
     object.lifecycle.heatSteps = steps;
+}
+
+// ---- saves ------------------------------------------------------------------------------------
+
+void BurnSystem::capture(BurnSnapshot& to) const {
+    to.droppedSteps = state_.droppedSteps;
+    to.order = state_.order;
+    to.pending = state_.pending;
+}
+
+void BurnSystem::complete(BurnSnapshot& to) const noexcept {
+    to.steps = state_.steps;
+    to.idle = state_.seenIdle;
+    to.lastStimulus = state_.seenStimulus;
+    to.counts = state_.counts;
+}
+
+void BurnSystem::restore(BurnSnapshot& from, uint32_t listed, uint32_t hot) noexcept {
+    state_.steps = from.steps;
+    state_.droppedSteps = from.droppedSteps;
+    state_.order = from.order;
+    // An awake world would filter the wind from here on, not from its first ignition.
+    state_.idle = state_.seenIdle = from.idle;
+    state_.lastStimulus = state_.seenStimulus = from.lastStimulus;
+    state_.stimuli.clear();
+    state_.frameNotes.clear();
+    state_.counts = state_.loaded = from.counts;
+    state_.counts.run = 0;
+    state_.loaded.front -= std::min(from.counts.front, listed);
+    state_.loaded.hot -= std::min(from.counts.hot, hot);
+    state_.pending.swap(from.pending);
+    settlePending();
+}
+
+void BurnSystem::restoreObject(Object& object) noexcept {
+    object.sleepsUnder = 0;
+    object.carryEnd = 0;  // what the save carries is settled with its events
+    object.stimuli = 0;
+    object.ignites = false;
+    object.firstFrame = context_.lastFrame + 1;
+    ++object.changes;
+    if (object.play.burn1 != 0) startPlay(object);
+    if (object.breaks) {  // it has not burnt, or restoreBreaks comes next
+        object.breaks->lookCount = 0;
+        object.breaks->shareReported = object.breaks->waits = false;
+        std::fill(object.breaks->lost.begin(), object.breaks->lost.end(), false);
+    }
+    if (!object.touched) {
+        object.counters = {};
+        return;
+    }
+    scene_.touched.push_back(&object);
+    if (object.lifecycle.ignitionKnown)
+        context_.backend.startBoundary(object.slot, object.lifecycle.ignitionPoint,
+                                       uint32_t(object.lifecycle.firstIgnition));
 }
 
 }  // namespace fw::world

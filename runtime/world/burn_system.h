@@ -8,17 +8,32 @@
 
 namespace fw::world {
 
-class EmitterSystem;
 class ExchangeSystem;
-class QuerySystem;
 class RoomSystem;
 class WindSystem;
 struct ImageStore;
-struct Snapshot;
+struct ObjectSnapshot;
 
 struct BurnCounts {  // of tiles, as of the last readback
     uint32_t front = 0, run = 0, burning = 0, hot = 0;
     uint32_t receivers = 0, lateClamps = 0;
+
+    FW_SERIALIZE(front, burning, hot, receivers, lateClamps)
+};
+
+struct BurnSnapshot {
+    explicit BurnSnapshot(std::pmr::memory_resource* memory) : pending(memory) {}
+    uint64_t steps = 0, droppedSteps = 0, order = 0;
+    bool idle = true;           // nothing burns, and nobody has to hear of who moves
+    uint64_t lastStimulus = 0;  // tick
+    BurnCounts counts;          // as of the readback
+    std::pmr::vector<PendingTexel> pending;
+
+    template <class A>
+    void serialize(A& a) {
+        a(steps, droppedSteps, order, idle, lastStimulus, counts);
+        a.list("events that wait", pending, 32);
+    }
 };
 
 struct BurnState {
@@ -44,8 +59,10 @@ struct BurnState {
 
 class BurnSystem {
  public:
+    static constexpr size_t kMaxPending = limits::kPendingEvents;  // texel events that wait
+
     BurnSystem(const WorldContext& context, Scene& scene, const WindSystem& wind, RoomSystem& rooms,
-               ExchangeSystem& exchange, EmitterSystem& emitters, QuerySystem& queries);
+               ExchangeSystem& exchange);
 
     // Texels addressed. `acts`: one of them, or of a match one that can burn.
     uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
@@ -53,18 +70,17 @@ class BurnSystem {
     void explainMiss(const FwIgnitionDef& def, uint32_t texels, std::span<char> text) noexcept;
     void transferBurn(FwBurnableMeshId from, FwBurnableMeshId to);
     void pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels);
-    // A baked burn is made of what requestBurnMap brings.
-    const std::pmr::vector<std::byte>* fetchBurn(FwBurnableMeshId id);  // null: not ready
     FwBurnId createBurn(std::span<const std::byte> bytes);
     void destroyBurn(FwBurnId id);
     void playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
     void stopBurn(FwBurnableMeshId id);
 
-    void plan(const ClockAdvance& time);  // throws std::bad_alloc
-    void planBreaks(uint64_t end) noexcept;
-    void reserveStimuli();  // throws std::bad_alloc
-    void fillPlan(gpu::FramePlan& plan) const noexcept;
-    void commit(uint64_t frameIndex, const ClockAdvance& time) noexcept;
+    void plan(const HostFrame& frame, gpu::FramePlan& plan);  // throws std::bad_alloc
+    // Slots of objects that the planned frame looks at for breaks.
+    [[nodiscard]] std::span<const uint32_t> searched() const noexcept { return frame_.breaks; }
+    [[nodiscard]] std::span<const Splash> splashes() const noexcept { return splashes_; }
+    void clearSplashes() noexcept { splashes_.clear(); }
+    void commit(const HostFrame& frame) noexcept;
     void onFrameDone(uint64_t frameIndex) noexcept;  // before anything else of its readback
     void onReadback(const gpu::Readback& readback) noexcept;
     void onBurnMap(Object& object, const gpu::BurnMap& map, const gpu::Readback& readback) noexcept;
@@ -75,6 +91,27 @@ class BurnSystem {
     core::Owned<Breaks> makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry,
                                    std::span<const uint8_t> gone);
     void reserveSlots();  // for an object more; throws std::bad_alloc
+
+    // Commands of another world's.
+    void apply(const IgniteTexels& command);
+    void apply(const IgniteObjects& command);
+    void apply(const PlayBurn& command);
+    void apply(const StopBurn& command) { stopBurn(scene_.objects.findId(command.slot)); }
+    void apply(const TransferBurn& command) {
+        transferBurn(scene_.objects.findId(command.from), scene_.objects.findId(command.to));
+    }
+    // Saves.
+    void capture(BurnSnapshot& to) const;
+    void complete(BurnSnapshot& to) const noexcept;  // with the readback of its frame
+    void checkCarry(const PendingTexel& event, const Clock& clock);  // throws
+    // Throws where this world has other burns.
+    void settlePlays(const BurnSnapshot& saved, std::span<ObjectSnapshot> objects,
+                     const Clock& clock);
+    // After objects are. So many tiles of the save are listed, and hot.
+    void restore(BurnSnapshot& from, uint32_t listed, uint32_t hot) noexcept;
+    void restoreObject(Object& object) noexcept;
+    void restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
+                       uint32_t now) noexcept;
 
     [[nodiscard]] const BurnState& state() const noexcept { return state_; }
     // As of the last readback, or by what came since.
@@ -90,10 +127,8 @@ class BurnSystem {
     void dropPending(size_t first) noexcept { state_.pending.resize(first); }
 
  private:
-    friend class PersistenceSystem;
     static constexpr uint32_t kMaxSteps = limits::kStepsPerFrame;
     static_assert(kMaxSteps == gpu::kMaxFieldRounds);
-    static constexpr size_t kMaxPending = limits::kPendingEvents;  // texel events that wait
 
     struct Frame {  // scratch of one frame; keeps its room between frames
         explicit Frame(std::pmr::memory_resource* given) : memory(given) {}
@@ -132,11 +167,8 @@ class BurnSystem {
     void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     [[nodiscard]] bool lightsSomething(size_t first) const noexcept;
-    // recording.cpp
     void recordTexels(size_t first) noexcept;
     void checkCommandTick(uint32_t tick) const;
-    void igniteTexels(const IgniteTexels& command);
-    void igniteObjects(const IgniteObjects& command);
     void addChange(Object& object, const TexelChange& change, std::span<const uint32_t> texels);
     // step.cpp
     void listDue(uint64_t end);
@@ -154,9 +186,10 @@ class BurnSystem {
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     void touchNear(uint32_t now);
     // burn_system.cpp
+    void reserveStimuli();  // throws std::bad_alloc
     Stimulus& stimulusOf(Object& object, uint64_t frameIndex) noexcept;
     void recordIgnition(Object& object, Stimulus& stimulus, uint32_t texel, uint32_t tick) noexcept;
-    void commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept;
+    void commitStimuli(const HostFrame& frame) noexcept;
     void applyCounters(const gpu::Readback& readback) noexcept;
     void applyEnergy(Object& object, uint32_t endTick) noexcept;
     void countFlames(Object& object, const gpu::ObjectCounters& before, uint32_t endTick) noexcept;
@@ -165,16 +198,14 @@ class BurnSystem {
     void waitForTransfers() noexcept;
     void continueBurn(Object& to, const BurnLifecycle& from) noexcept;
     [[nodiscard]] bool gives(uint32_t slot) const noexcept;  // its burn is about to be carried
-    void checkCarry(const PendingTexel& event, const Clock& clock);  // of a save; throws
-    void settlePending() noexcept;                                   // after a load
+    void settlePending() noexcept;                           // after a load
     // breaks.cpp
     [[nodiscard]] const mesh::Pieces& piecesOf(const Object& object) noexcept;  // it has breaks
+    void planBreaks(uint64_t end) noexcept;
     void commitBreaks(uint64_t frameIndex) noexcept;
     void markBearers(const Object& object) noexcept;
     void findBreaks(Object& object, std::span<const uint32_t> ticks,
                     std::span<const gpu::uvec2> heat, uint32_t now, const uint64_t* tells) noexcept;
-    void restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
-                       uint32_t now) noexcept;
     // played.cpp
     void playBurnAt(FwBurnableMeshId id, FwBurnId burn, uint32_t tick, float speed);
     void reservePlays(size_t more);
@@ -183,7 +214,6 @@ class BurnSystem {
     size_t beginPlays(uint64_t end);
     void planPlays(uint32_t now, std::span<const Frame::Due> due);
     void turnPlay(const Object& object) noexcept;
-    void settlePlays(Snapshot& saved);  // of a save: throws where this world has other burns
     void commitPlays(uint64_t frameIndex) noexcept;
 
     const WorldContext& context_;
@@ -191,11 +221,9 @@ class BurnSystem {
     const WindSystem& wind_;
     RoomSystem& rooms_;
     ExchangeSystem& exchange_;
-    EmitterSystem& emitters_;
-    QuerySystem& queries_;
     BurnState state_{context_.memory};
     Frame frame_{context_.memory};
-    std::pmr::vector<std::byte> burnBytes_{context_.memory};  // of the last fetchBurn
+    std::pmr::vector<Splash> splashes_{context_.memory};  // since they were last cleared
     mesh::HoldScratch holds_{context_.memory};  // room for the largest that asks what breaks
 };
 

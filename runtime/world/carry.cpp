@@ -3,7 +3,7 @@
 #include "mesh/carry.h"
 #include "core/reserved.h"
 #include "world/burn_system.h"
-#include "world/persistence.h"
+#include "world/recording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +103,7 @@ void BurnSystem::keepGiven(const Object& from) {
 // Of a save. Throws FW_ERROR_BAD_DATA.
 void BurnSystem::checkCarry(const PendingTexel& event, const Clock& clock) {
     const uint32_t slot = carriedFrom(event);
-    const auto* owned = slot < scene_.objects.slotCount() ? scene_.objects.at(slot) : nullptr;
+    const auto* owned = scene_.objects.findSlot(slot);
     const Object& to = scene_.objectAt(event.object);
     if (!owned || slot == event.object || event.tick > clock.tick ||
         event.water >= scene_.domainOf(**owned).texelCount() ||

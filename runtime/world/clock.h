@@ -1,5 +1,6 @@
 // Host time to simulation steps without drift: a frame's time is summed as an integer of 2^-44 s.
 #pragma once
+#include "core/assert.h"
 #include "shared/burn.h"
 
 #include <cstdint>
@@ -38,6 +39,9 @@ struct ClockAdvance {
 
 // deltaTime: s, [0, 10], checked by the caller.
 inline ClockAdvance advance(const Clock& clock, float deltaTime, uint32_t maxSteps) noexcept {
+    FW_ASSERT(
+        clock.fraction < Clock::kStepUnits && clock.tick % gpu::kStepTicks == 0 && deltaTime >= 0,
+        "%g s", double(deltaTime));
     ClockAdvance result;
     result.after = clock;
     const double units = double(deltaTime) * double(uint64_t(1) << Clock::kFractionBits);

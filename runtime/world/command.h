@@ -45,6 +45,7 @@ struct Runs {
                 return true;
             }
         }
+        FW_ASSERT(count <= kMost, "%u runs", count);
         if (count == kMost) return false;
         runs[count++] = {value, 1};
         return true;
@@ -114,32 +115,30 @@ struct Transform {  // an affine matrix without its last row, in columns
     }
 };
 
-struct SetPose {
+struct SlotTransform {
     uint32_t slot = 0;
     Transform transform;
 
     FW_SERIALIZE(slot, transform)
 };
+struct SetPose : SlotTransform {};
+struct MoveHeatOccluder : SlotTransform {};
 
-struct MoveHeatOccluder {
+struct SlotNumber {
     uint32_t slot = 0;
-    Transform transform;
+    float value = 0;
 
-    FW_SERIALIZE(slot, transform)
+    FW_SERIALIZE(slot, value)
 };
+struct SetFirePower : SlotNumber {};     // kW
+struct SetEmitterPower : SlotNumber {};  // kW
+struct SetFieldAmount : SlotNumber {};
 
 struct MoveFire {
     uint32_t slot = 0;
     float position[3] = {};
 
     FW_SERIALIZE(slot, position)
-};
-
-struct SetFirePower {
-    uint32_t slot = 0;
-    float power = 0;  // kW
-
-    FW_SERIALIZE(slot, power)
 };
 
 struct MoveEmitter {
@@ -154,13 +153,6 @@ struct MoveEmitter {
     }
 };
 
-struct SetEmitterPower {
-    uint32_t slot = 0;
-    float power = 0;  // kW
-
-    FW_SERIALIZE(slot, power)
-};
-
 struct MoveField {
     uint32_t slot = 0;
     bool turns = false;  // else it keeps its rotation
@@ -171,13 +163,6 @@ struct MoveField {
         a(slot, turns, position);
         if (turns) a(rotation);
     }
-};
-
-struct SetFieldAmount {
-    uint32_t slot = 0;
-    float amount = 0;
-
-    FW_SERIALIZE(slot, amount)
 };
 
 struct SetWindZone {
@@ -217,19 +202,36 @@ struct SetWindGrid {  // calm, until SetWindPoints follow
 };
 
 struct SetWindPoints {
-    static constexpr uint32_t kPoints = 8;
+    static constexpr uint32_t kCount = 8;
     uint32_t first = 0;
-    std::array<components::WindPoint, kPoints> points{};
+    std::array<components::WindPoint, kCount> values{};
 
     template <class A>
     void serialize(A& a) {
-        a(first, points);
-        for (const components::WindPoint& point : points)
+        a(first, values);
+        for (const components::WindPoint& point : values)
             for (const int16_t units : point)
                 a.require(units >= -fire::kMaxWindUnits && units <= fire::kMaxWindUnits,
                           "wind at a grid point");
     }
 };
+
+// Records a large state in parts of type Part, those alone that differ from `before`, which is all
+// zeros where `stays` is false: Part::kCount values each, in the member `values`.
+template <class Part, class Recorder, class Values>
+void recordParts(Recorder& recorder, const Values& values, const Values& before, bool stays) {
+    for (uint32_t first = 0; first < values.size(); first += Part::kCount) {
+        Part part{first};
+        const auto count = std::min<size_t>(Part::kCount, values.size() - first);
+        std::copy_n(values.begin() + first, count, part.values.begin());
+        const auto begin = part.values.begin(), end = begin + ptrdiff_t(count);
+        const bool same = stays ? std::equal(begin, end, before.begin() + first)
+                                : std::all_of(begin, end, [](const auto& value) {
+                                      return value == std::remove_cvref_t<decltype(value)>{};
+                                  });
+        if (!same) recorder.record(part);
+    }
+}
 
 struct SetGusts {
     int64_t strength = 0, size = 0;  // as in components::Gusts
@@ -244,11 +246,11 @@ struct SetHeatShield {  // empty, until SetShieldCells and AddShieldObject follo
 };
 
 struct SetShieldCells {
-    static constexpr uint32_t kWords = 12;  // of 32 cells each
+    static constexpr uint32_t kCount = 12;  // of 32 cells each
     uint32_t first = 0;                     // word
-    std::array<uint32_t, kWords> words{};
+    std::array<uint32_t, kCount> values{};
 
-    FW_SERIALIZE(first, words)
+    FW_SERIALIZE(first, values)
 };
 
 struct AddShieldObject {

@@ -1,4 +1,4 @@
-#include "world/command_log.h"
+#include "world/recording.h"
 
 #include "core/hash.h"
 #include "core/stream.h"
@@ -11,7 +11,7 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kMagic = 0x474C5746;  // "FWLG"
+constexpr char kMagic[] = "FWLG";
 constexpr uint32_t kLogVersion = 2;
 constexpr size_t kHeadBytes = 24;  // magic, version, identity, checksum of the rest
 constexpr uint16_t kSaveEntry = 0xFFFF;
@@ -31,8 +31,7 @@ void writeLog(std::span<const LogEntry> entries, uint64_t identity,
               std::pmr::vector<std::byte>& out) {
     out.clear();
     core::Writer writer(out);
-    writer.number(kMagic);
-    writer.number(kLogVersion);
+    save::writeHead(writer, kMagic, kLogVersion);
     writer.number(identity);
     writer.number(uint64_t(0));  // the checksum's place
     writer.number(uint32_t(entries.size()));
@@ -48,17 +47,8 @@ void writeLog(std::span<const LogEntry> entries, uint64_t identity,
 void readLog(std::span<const std::byte> bytes, uint64_t identity,
              std::pmr::vector<LogEntry>& entries) {
     save::Reader reader(bytes, "log", entries.get_allocator().resource());
-    uint32_t magic = 0, version = 0;
     uint64_t world = 0, sum = 0;
-    reader.number(magic);
-    if (magic != kMagic) core::fail(FW_ERROR_BAD_DATA, "The log does not begin with \"FWLG\".");
-    reader.number(version);
-    if (version != kLogVersion)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The log has format version %u; this library reads version %u alone. %s",
-                   version, kLogVersion,
-                   version < kLogVersion ? "Play it with the older library that wrote it."
-                                         : "Play it with the newer library that wrote it.");
+    save::readHead(reader, kMagic, kLogVersion);
     reader.number(world);
     reader.number(sum);
     if (sum != core::hashBytes(bytes.subspan(kHeadBytes)))
@@ -100,20 +90,20 @@ std::span<const LogEntry> fromTick(std::span<const LogEntry> entries, uint64_t t
 }
 
 void PersistenceSystem::startLog() {
-    commandLog_ = core::Owned<CommandLog>::make(world_.context_.memory, world_.context_.memory);
+    recorder_.log = core::Owned<CommandLog>::make(context_.memory, context_.memory);
 }
 
-void PersistenceSystem::stopLog() noexcept { commandLog_ = {}; }
+void PersistenceSystem::stopLog() noexcept { recorder_.log = {}; }
 
 const std::pmr::vector<std::byte>& PersistenceSystem::fetchLog() {
-    if (!commandLog_)
+    if (!recorder_.log)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The world records no log; fwWorld_StartCommandLog first.");
-    if (commandLog_->lost)
+    if (recorder_.log->lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the log was recorded; it has a gap.");
-    writeLog(commandLog_->entries, identity(), commandLog_->bytes);
-    return commandLog_->bytes;
+    writeLog(recorder_.log->entries, identity(), recorder_.log->bytes);
+    return recorder_.log->bytes;
 }
 
 void PersistenceSystem::openLog(std::span<const std::byte> bytes) {
@@ -121,7 +111,7 @@ void PersistenceSystem::openLog(std::span<const std::byte> bytes) {
         playedLog_ = {};
         return;
     }
-    auto log = core::Owned<CommandLog>::make(world_.context_.memory, world_.context_.memory);
+    auto log = core::Owned<CommandLog>::make(context_.memory, context_.memory);
     readLog(bytes, identity(), log->entries);
     playedLog_ = std::move(log);
 }
@@ -130,27 +120,32 @@ float PersistenceSystem::playLog(uint64_t untilTick) {
     if (!playedLog_)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "There is no log to play; fwWorld_OpenCommandLog first.");
-    mayChange();
-    std::span<const LogEntry> ahead =
-        fromTick(playedLog_->entries, world_.context_.clock.tick,
-                 world_.context_.loadedTick == world_.context_.clock.tick);
+    recorder_.mayChange();
+    std::span<const LogEntry> ahead = fromTick(playedLog_->entries, context_.clock.tick,
+                                               context_.loadedTick == context_.clock.tick);
     uint64_t until = untilTick - untilTick % gpu::kStepTicks;
-    if (until <= world_.context_.clock.tick) return 0;
-    for (; !ahead.empty() && ahead.front().tick == world_.context_.clock.tick;
-         ahead = ahead.subspan(1)) {
-        if (ahead.front().save) continue;
+    if (until <= context_.clock.tick) return 0;
+    ahead = ahead.subspan(applyUntilNow(ahead, "log"));
+    if (!ahead.empty()) until = std::min(until, ahead.front().tick);
+    until = std::min(until, context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
+    return secondsUpTo(until);
+}
+
+// Applies the entries up to the present, and returns how many these are. One that is refused is
+// left out.
+size_t PersistenceSystem::applyUntilNow(std::span<const LogEntry> entries, const char* name) {
+    size_t count = 0;
+    for (; count < entries.size() && entries[count].tick <= context_.clock.tick; ++count) {
+        if (entries[count].save) continue;
         try {
-            apply(ahead.front().command);
+            apply(entries[count].command);
         } catch (const core::Error& error) {
-            world_.context_.log.write(
-                FW_LOG_WARNING, "A command of the log at tick %llu is refused: %s",
-                static_cast<unsigned long long>(world_.context_.clock.tick), error.message);
+            context_.log.write(FW_LOG_WARNING, "A command of the %s at tick %llu is refused: %s",
+                               name, static_cast<unsigned long long>(context_.clock.tick),
+                               error.message);
         }
     }
-    if (!ahead.empty()) until = std::min(until, ahead.front().tick);
-    until = std::min(until,
-                     world_.context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
-    return secondsUpTo(until);
+    return count;
 }
 
 // The next call would find the step still ahead.

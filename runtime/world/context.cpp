@@ -18,6 +18,7 @@ void OriginShifts::add(const double (&by)[3], uint64_t lastFrame) noexcept {
         std::copy(pending.begin() + 1, pending.end(), pending.begin());
         --count;
     }
+    FW_ASSERT(count < pending.size(), "%u moves", count);
     Shift& shift = pending[count++];
     shift.frame = lastFrame;
     std::copy_n(by, 3, shift.by);

@@ -1,5 +1,6 @@
 // The world as every system may read it: rules, clock, frame and origin. The world alone writes it.
 #pragma once
+#include "core/error.h"
 #include "core/log.h"
 #include "gpu/backend.h"
 #include "world/clock.h"
@@ -10,7 +11,7 @@
 
 namespace fw::world {
 
-class PersistenceSystem;
+class Recorder;
 struct Object;
 
 // Moves of the world's origin. Readbacks of earlier frames speak of the places before a move.
@@ -32,13 +33,34 @@ struct OriginShifts {
     }
 };
 
+// A frame of the host's that is planned, and committed once the backend ran it.
+struct HostFrame {
+    uint64_t index = 0;
+    float seconds = 0;
+    uint64_t begin = 0;  // tick
+    ClockAdvance time;
+    [[nodiscard]] uint64_t end() const noexcept { return time.after.tick; }
+};
+
+// Throws where no more things fit.
+template <class Pool>
+void checkRoom(const Pool& pool, uint32_t most, const char* names) {
+    if (pool.live() >= most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u %s are there; the limit is %u.", pool.live(),
+                   names, most);
+}
+
+inline void setFlag(uint32_t& flags, uint32_t flag, bool on) noexcept {
+    flags = (flags & ~flag) | (on ? flag : 0u);
+}
+
 struct WorldContext {
     std::pmr::memory_resource* memory;
     gpu::Backend& backend;
     const core::Log& log;
     FwWorldDef def;
     EventQueue& events;
-    PersistenceSystem& recorder;  // of the host's commands
+    Recorder& recorder;  // of the host's commands
 
     Clock clock;
     OriginShifts origin;

@@ -7,8 +7,7 @@
 #include "shared/spark.h"
 #include "world/burn_system.h"
 #include "world/flame_system.h"
-#include "world/persistence.h"
-#include "world/query_system.h"
+#include "world/recording.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
 
@@ -21,13 +20,19 @@ using components::FireEmitter;
 
 namespace {
 
+constexpr uint32_t kSavedFlags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+
+template <class Stream, class Visit>
+void eachRay(Stream& stream, const Visit& visit) {
+    for (auto& parcel : stream.parcels)
+        for (auto& ray : parcel.rays) visit(ray);
+}
+
 void moveJet(components::JetStream& stream, const double (&by)[3]) noexcept {
     for (components::JetPatches* patches : {&stream.patches, &stream.before})
         for (components::JetPatch& patch : *patches) movePast(patch.place, by);
-    for (components::JetParcel& parcel : stream.parcels) {
-        movePast(parcel.from, by);
-        for (components::JetRay& ray : parcel.rays) movePast(ray.hit.place, by);
-    }
+    for (components::JetParcel& parcel : stream.parcels) movePast(parcel.from, by);
+    eachRay(stream, [&](components::JetRay& ray) { movePast(ray.hit.place, by); });
 }
 void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double along) noexcept {
     moveBy(emitter.position, by);
@@ -46,14 +51,12 @@ void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double
 }  // namespace
 
 EmitterSystem::EmitterSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
-                             const ExchangeSystem& exchange, FlameSystem& flames,
-                             QuerySystem& queries, BurnSystem& burn)
+                             const ExchangeSystem& exchange, FlameSystem& flames, BurnSystem& burn)
     : context_(context),
       scene_(scene),
       wind_(wind),
       exchange_(exchange),
       flames_(flames),
-      queries_(queries),
       burn_(burn) {}
 
 components::EmitterAir EmitterSystem::airOf(const FireEmitter& emitter,
@@ -68,15 +71,15 @@ components::EmitterAir EmitterSystem::airOf(const FireEmitter& emitter,
     const std::array<float, 3> wind = wind_.at(place, context_.clock.tick);
     std::copy_n(wind.data(), 3, air.wind);
     std::copy_n(context_.def.up, 3, air.up);
-    air.now = state_.time + double(ahead);
+    air.now = time_ + double(ahead);
     return air;
 }
 
 // First room of so many particles between those of the others.
 uint32_t EmitterSystem::findRing(uint32_t particles) {
     rings_.clear();
-    rings_.reserve(state_.emitters.live() + 1);
-    for (auto [i, one] : state_.emitters.entries()) rings_.push_back({one.first, one.ring});
+    rings_.reserve(emitters_.live() + 1);
+    for (auto [i, one] : emitters_.entries()) rings_.push_back({one.first, one.ring});
     std::sort(rings_.begin(), rings_.end());
     uint32_t first = 0;
     for (const auto& ring : rings_) {
@@ -93,9 +96,7 @@ uint32_t EmitterSystem::findRing(uint32_t particles) {
 }
 
 FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
-    if (state_.emitters.live() >= gpu::kMaxEmitters)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire emitters are there; the limit is %u.",
-                   state_.emitters.live(), gpu::kMaxEmitters);
+    checkRoom(emitters_, gpu::kMaxEmitters, "fire emitters");
     FireEmitter emitter;
     components::makeFireEmitter(def, context_.def.seed * 0x9E3779B9u + 77u * (made_ + 1), emitter);
     emitter.books = flames_.flipbooksOf(def);
@@ -107,31 +108,29 @@ FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
     for (const auto& ring : rings_)
         needed += (ring.second + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
     if (groups < needed) groups_.reserve(std::max(needed, 2 * groups));
-    const size_t records = records_.capacity(), live = state_.emitters.live() + 1;
+    const size_t records = records_.capacity(), live = emitters_.live() + 1;
     if (records < live) {
         records_.reserve(std::max(live, 2 * records));
         sparks_.reserve(std::max(live, 2 * records));
     }
     flames_.reserve(0);  // of shapes that jets are swept through
-    if (components::isSwept(def))
-        queries_.reserveJetProbes((state_.emitters.live() + 1) * components::kJetRays);
+    if (components::isSwept(def)) core::growTo(probes_, live * components::kJetRays);
     if (def.flags & FW_EMITTER_IGNITES)
         emitter.stream = core::Owned<components::JetStream>::make(context_.memory);
-    const FwFireEmitterId id = state_.emitters.create(std::move(emitter));
+    const FwFireEmitterId id = emitters_.create(std::move(emitter));
     ++made_;
     flames_.countFlipbookUsers(def, 1);
     return id;
 }
 
 void EmitterSystem::destroy(FwFireEmitterId id) {
-    const FwFireEmitterDef def = state_.emitters.get(id).def;
-    queries_.forgetJet(id);
-    state_.emitters.destroy(id);
+    const FwFireEmitterDef def = emitters_.get(id).def;
+    emitters_.destroy(id);
     flames_.countFlipbookUsers(def, -1);
 }
 
 void EmitterSystem::move(FwFireEmitterId id, const float position[3], const float* direction) {
-    FireEmitter& emitter = state_.emitters.get(id);
+    FireEmitter& emitter = emitters_.get(id);
     const bool burns = bool(emitter.stream);
     if (burns) context_.recorder.mayChange();
     components::moveFireEmitter(emitter, position, direction);
@@ -143,20 +142,19 @@ void EmitterSystem::move(FwFireEmitterId id, const float position[3], const floa
 }
 
 void EmitterSystem::setPower(FwFireEmitterId id, float power) {
-    FireEmitter& emitter = state_.emitters.get(id);
+    FireEmitter& emitter = emitters_.get(id);
     const bool burns = bool(emitter.stream);
     if (burns) context_.recorder.mayChange();
     components::setEmitterPower(emitter, power);
-    if (burns) context_.recorder.record(SetEmitterPower{id.index1 - 1, power});
+    if (burns) context_.recorder.record(SetEmitterPower{{id.index1 - 1, power}});
 }
 
 void EmitterSystem::setHidden(FwFireEmitterId id, bool hidden) {
-    uint32_t& flags = state_.emitters.get(id).def.flags;
-    flags = (flags & ~uint32_t(FW_EMITTER_HIDDEN)) | (hidden ? uint32_t(FW_EMITTER_HIDDEN) : 0u);
+    setFlag(emitters_.get(id).def.flags, FW_EMITTER_HIDDEN, hidden);
 }
 
 void EmitterSystem::fillState(FwFireEmitterId id, FwFireEmitterState& state) {
-    FireEmitter& emitter = state_.emitters.get(id);
+    FireEmitter& emitter = emitters_.get(id);
     components::fillEmitterState(emitter, airOf(emitter, 0), state);
 }
 
@@ -196,21 +194,22 @@ void EmitterSystem::sampleGround(gpu::SparkSource& source) const noexcept {
     }
 }
 
-void EmitterSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
+void EmitterSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
+    const float seconds = frame.seconds;
     records_.clear();
     groups_.clear();
     sparks_.clear();
     uint32_t end = 0, particles = 0, lights = 0, sparks = 0;
     bool listed = false;
-    for (uint32_t i = 0; i < state_.emitters.slotCount(); ++i) {
-        FireEmitter* emitter = state_.emitters.at(i);
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
+        FireEmitter* emitter = emitters_.at(i);
         gpu::ParticleEmitter record;
         if (emitter && emitter->def.shape == FW_EMITTER_MESH)
             emitter->share = burningShare(*emitter);
         if (emitter && components::isSwept(emitter->def)) {
             if (!listed) flames_.listShapes();
             listed = true;
-            updateJetObstacles(*emitter, state_.time + double(seconds));
+            updateJetObstacles(*emitter, time_ + double(seconds));
         }
         if (!emitter) continue;
         const components::EmitterAir air = airOf(*emitter, seconds);
@@ -225,12 +224,15 @@ void EmitterSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
             emitter->def.shape == FW_EMITTER_MESH && !scene_.objects.find(emitter->def.object);
         if (!gone && components::advanceSparks(*emitter, air, seconds, source)) {
             if (!(emitter->def.flags & FW_EMITTER_NO_COLLISION)) sampleGround(source);
+            FW_ASSERT(sparks_.size() < sparks_.capacity(), "%zu sources", sparks_.size());
             sparks_.push_back(source);
             sparks += components::sparkQuads(source);
         }
         if (!shows) continue;
         for (uint32_t first = 0; first < record.ring; first += gpu::kParticleGroup)
             groups_.push_back({uint32_t(records_.size()), first});
+        FW_ASSERT(records_.size() < records_.capacity() && groups_.size() <= groups_.capacity(),
+                  "%zu emitters", records_.size());
         records_.push_back(record);
         end = std::max(end, record.first + record.ring);
         const bool emits = (record.flags & gpu::kEmitterEmits) != 0;
@@ -249,27 +251,95 @@ void EmitterSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
     if (shows() || shown_) plan.emitters = &update_;
 }
 
-void EmitterSystem::commit(float seconds) noexcept {
+void EmitterSystem::commit(const HostFrame& frame) noexcept {
     shown_ = shows();
-    state_.time += double(seconds);
-    for (auto [i, emitter] : state_.emitters.entries()) components::commitEmitter(emitter);
+    time_ += double(frame.seconds);
+    for (auto [i, emitter] : emitters_.entries()) components::commitEmitter(emitter);
 }
 
-void EmitterSystem::onHole(uint32_t slot, uint32_t ray, const components::JetHole& hole) noexcept {
-    if (FireEmitter* emitter = state_.emitters.at(slot)) emitter->holes[ray] = hole;
+void EmitterSystem::onProbes(std::span<const JetProbe> answers) noexcept {
+    for (const JetProbe& probe : answers) {
+        FW_ASSERT(probe.ray < components::kJetRays, "ray %u", probe.ray);
+        if (FireEmitter* emitter = emitters_.find(probe.emitter))
+            emitter->holes[probe.ray] = {probe.gone ? probe.object : FwBurnableMeshId{},
+                                         probe.texel};
+    }
 }
 
-void EmitterSystem::reserveSlots(size_t objects) { core::growTo(jetSlots_, objects); }
+void EmitterSystem::reserveSlots() { core::growTo(jetSlots_, scene_.objects.slotCount()); }
+
+// ---- saves ------------------------------------------------------------------------------------
+
+void EmitterSystem::capture(SlottedList<EmitterSnapshot>& to) const {
+    captureSlots(emitters_, to, [&](const FireEmitter& emitter, EmitterSnapshot& made) {
+        made.flags = emitter.def.flags & kSavedFlags;
+        std::copy_n(emitter.position, 3, made.position);
+        std::copy_n(emitter.direction, 3, made.direction);
+        made.power = emitter.def.power;
+        made.touches = emitter.touches;
+        if (!emitter.stream) return;
+        made.stream = core::Owned<components::JetStream>::make(context_.memory, *emitter.stream);
+        eachRay(*made.stream, [&](components::JetRay& ray) {
+            ray.version = ray.version == scene_.geometryVersion ? 1 : 0;
+            if (ray.version == 0) ray.hit = {};  // it may be of what is gone
+        });
+    });
+}
+
+void EmitterSystem::checkSnapshot(const SlottedList<EmitterSnapshot>& from, uint64_t tick) const {
+    checkSlots(from, emitters_, "fire emitter", "fire emitters");
+    for (const Slotted<EmitterSnapshot>& one : from) {
+        const FireEmitter& mine = *emitters_.at(one.slot);
+        bool fits =
+            (mine.def.flags & kSavedFlags) == one.flags && bool(mine.stream) == bool(one.stream);
+        if (one.stream)
+            for (const components::JetParcel& parcel : one.stream->parcels)
+                fits &= parcel.launched == components::kJetNever || parcel.launched <= tick;
+        checkSame(fits, "fire emitter", one.slot);
+    }
+}
+
+void EmitterSystem::restore(const SlottedList<EmitterSnapshot>& from) noexcept {
+    time_ = double(context_.clock.tick) / double(gpu::kTicksPerSecond);
+    for (const Slotted<EmitterSnapshot>& one : from) {
+        FireEmitter& emitter = emitters_.get(emitters_.idOf(one.slot));
+        std::copy_n(one.position, 3, emitter.position);
+        std::copy_n(one.direction, 3, emitter.direction);
+        if (emitter.def.power != one.power) components::setEmitterPower(emitter, one.power);
+        emitter.births = {};  // particles in flight belong to another time
+        emitter.births.warms = true;
+        emitter.lastObstacles = {};
+        components::settleSparks(emitter, time_);
+        emitter.swept = 0;
+        emitter.touches = one.touches;
+        if (!emitter.stream) continue;
+        *emitter.stream = *one.stream;
+        emitter.stream->before = emitter.stream->patches;
+        eachRay(*emitter.stream, [&](components::JetRay& ray) {
+            ray.version = ray.version != 0 ? scene_.geometryVersion : 0;
+        });
+    }
+}
+
+void EmitterSystem::apply(const WetPatch& command) {
+    FireEmitter& emitter = emitters_.get(emitters_.findId(command.emitter));
+    if (!emitter.stream || command.patch >= components::kJetPatches)
+        core::fail(FW_ERROR_BAD_DATA, "A command wets patch %u of fire emitter %u.", command.patch,
+                   command.emitter + 1);
+    for (components::JetPatches* patches : {&emitter.stream->patches, &emitter.stream->before})
+        components::wetPatch((*patches)[command.patch], command.grams, command.tick);
+    context_.recorder.record(command);
+}
 
 void EmitterSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, emitter] : state_.emitters.entries())
+    for (auto [i, emitter] : emitters_.entries())
         checkMoved(emitter.position, by, "fire emitter", i);
 }
 
 void EmitterSystem::shiftOrigin(const double (&by)[3]) noexcept {
     double along = 0;  // m up
     for (int i = 0; i < 3; ++i) along += by[i] * double(context_.def.up[i]);
-    for (auto [i, emitter] : state_.emitters.entries()) moveEmitter(emitter, by, along);
+    for (auto [i, emitter] : emitters_.entries()) moveEmitter(emitter, by, along);
 }
 
 }  // namespace fw::world

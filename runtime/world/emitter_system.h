@@ -4,28 +4,38 @@
 #include "components/fire_emitter.h"
 #include "shared/particle.h"
 #include "shared/spark.h"
+#include "world/command.h"
 #include "world/pending.h"
 #include "world/scene.h"
+#include "world/slotted.h"
 
 namespace fw::world {
 
 class BurnSystem;
 class ExchangeSystem;
 class FlameSystem;
-class QuerySystem;
 class WindSystem;
 
-struct EmitterState {
-    explicit EmitterState(std::pmr::memory_resource* memory) : emitters("Fire emitter", memory) {}
-    core::HandlePool<FwFireEmitterId, components::FireEmitter> emitters;
-    double time = 0;  // s
+struct EmitterSnapshot {
+    uint32_t flags = 0;  // FW_EMITTER_JET, FW_EMITTER_IGNITES
+    float position[3] = {}, direction[3] = {}, power = 0;
+    std::array<components::JetTouch, 8> touches{};
+    core::Owned<components::JetStream> stream;
+
+    template <class A>
+    void serialize(A& a) {
+        a(flags, position, direction, power, touches);
+        a.optional(stream);
+        a.range("fire emitter's place", position, -1e6, 1e6);
+        a.range("fire emitter's direction", direction, -1e6, 1e6);
+        a.range("fire emitter's power", power, 0, components::kMaxPower);
+    }
 };
 
 class EmitterSystem {
  public:
     EmitterSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
-                  const ExchangeSystem& exchange, FlameSystem& flames, QuerySystem& queries,
-                  BurnSystem& burn);
+                  const ExchangeSystem& exchange, FlameSystem& flames, BurnSystem& burn);
 
     FwFireEmitterId create(const FwFireEmitterDef& def);
     void destroy(FwFireEmitterId id);
@@ -38,25 +48,39 @@ class EmitterSystem {
     // Before the exchanges of a frame, the first of them at tick `first`.
     void beginExchanges(uint32_t first) noexcept;
     void heatObjects(uint32_t now);  // at an exchange
-    void probeJets();                // throws
-    void plan(float seconds, gpu::FramePlan& plan) noexcept;
-    void commit(float seconds) noexcept;
-    // The answer to a probe of a jet's ray: the texel that it struck is burnt through, or stands.
-    void onHole(uint32_t slot, uint32_t ray, const components::JetHole& hole) noexcept;
-    void forgetObject(FwBurnableMeshId id, uint32_t slot) noexcept;  // that goes
-    // Water that falls on an object falls on fuel that sticks to it.
-    void wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
-                    uint32_t tick) noexcept;
-    void reserveSlots(size_t objects);             // throws std::bad_alloc
+    void plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept;
+    void commit(const HostFrame& frame) noexcept;
+    // Lists where jets strike. Particles pass what is gone 2 to 3 frames later.
+    void listProbes() noexcept;
+    [[nodiscard]] std::span<const JetProbe> probes() const noexcept { return probes_; }
+    [[nodiscard]] size_t mostProbes() const noexcept { return probes_.capacity(); }
+    void onProbes(std::span<const JetProbe> answers) noexcept;
+    void forgetObject(const Object& object) noexcept;  // that goes
+    // `records`: the host's water is recorded; a field's follows from the field.
+    void wetPatches(std::span<const Splash> splashes, bool records) noexcept;
+    void reserveSlots();                           // throws std::bad_alloc
     void checkShift(const double (&by)[3]) const;  // throws
     void shiftOrigin(const double (&by)[3]) noexcept;
 
-    [[nodiscard]] const EmitterState& state() const noexcept { return state_; }
+    void apply(const MoveEmitter& command) {
+        move(emitters_.findId(command.slot), command.position,
+             command.turns ? command.direction : nullptr);
+    }
+    void apply(const SetEmitterPower& command) {
+        setPower(emitters_.findId(command.slot), command.value);
+    }
+    void apply(const WetPatch& command);
+    void capture(SlottedList<EmitterSnapshot>& to) const;
+    // Throws unless restore takes it. `tick`: of the save.
+    void checkSnapshot(const SlottedList<EmitterSnapshot>& from, uint64_t tick) const;
+    void restore(const SlottedList<EmitterSnapshot>& from) noexcept;
+
+    [[nodiscard]] const auto& emitters() const noexcept { return emitters_; }
+    [[nodiscard]] double time() const noexcept { return time_; }
     [[nodiscard]] components::EmitterAir airOf(const components::FireEmitter& emitter,
                                                float ahead) const noexcept;
 
  private:
-    friend class PersistenceSystem;
     [[nodiscard]] bool shows() const noexcept {  // in the planned frame
         return !records_.empty() || !sparks_.empty();
     }
@@ -96,15 +120,17 @@ class EmitterSystem {
     const WindSystem& wind_;
     const ExchangeSystem& exchange_;
     FlameSystem& flames_;
-    QuerySystem& queries_;
     BurnSystem& burn_;
-    EmitterState state_{context_.memory};
+    core::HandlePool<FwFireEmitterId, components::FireEmitter> emitters_{"Fire emitter",
+                                                                         context_.memory};
+    double time_ = 0;  // s
     // Of a frame; room for all of it is reserved with each emitter.
     std::pmr::vector<gpu::ParticleEmitter> records_{context_.memory};
     std::pmr::vector<gpu::uvec2> groups_{context_.memory};
     std::pmr::vector<std::pair<uint32_t, uint32_t>> rings_{
         context_.memory};  // scratch: first, ring
     std::pmr::vector<gpu::SparkSource> sparks_{context_.memory};
+    std::pmr::vector<JetProbe> probes_{context_.memory};
     gpu::EmitterUpdate update_;
     uint32_t made_ = 0;   // since ever
     bool shown_ = false;  // the backend has some

@@ -6,6 +6,7 @@ namespace fw::world {
 
 void EventQueue::push(const FwEvent& event) noexcept {
     const std::lock_guard lock(mutex_);
+    FW_ASSERT(pushed_ - polled_ <= kCapacity, "%zu events", size_t(pushed_ - polled_));
     if (pushed_ - polled_ == kCapacity) {
         ++polled_;
         ++dropped_;

@@ -1,5 +1,6 @@
 // What the host polls: a ring of a fixed size. Full: the oldest go, and are counted.
 #pragma once
+#include "core/assert.h"
 #include "flamewright/flamewright.h"
 
 #include <cstdint>
@@ -33,6 +34,7 @@ class EventQueue {
         return pushed_ > kCapacity ? pushed_ - kCapacity : 0;
     }
     [[nodiscard]] const FwEvent& at(uint64_t number) const noexcept {
+        FW_ASSERT(number < pushed_ && number >= oldest(), "event %zu", size_t(number));
         return ring_[number % kCapacity];
     }
 

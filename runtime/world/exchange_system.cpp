@@ -6,7 +6,7 @@
 #include "core/growth.h"
 #include "fire/heat.h"
 #include "mesh/exchange_tiles.h"
-#include "world/persistence.h"
+#include "world/recording.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
 
@@ -54,6 +54,11 @@ bool sameRecord(const gpu::ExchangeObject& a, const gpu::ExchangeObject& b) noex
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+template <class T>
+bool bySlots(const T& a, const T& b) noexcept {
+    return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
+}
+
 bool before(const gpu::ContactLink& a, const gpu::ContactLink& b) noexcept {
     return std::tie(a.texel, a.fromObject, a.fromTexel) <
            std::tie(b.texel, b.fromObject, b.fromTexel);
@@ -63,11 +68,10 @@ bool before(const gpu::ContactLink& a, const gpu::ContactLink& b) noexcept {
 
 ExchangeSystem::ExchangeSystem(const WorldContext& context, Scene& scene, const WindSystem& wind)
     : context_(context), scene_(scene), wind_(wind) {
-    TransferState& book = state_.book;
     const FwWorldDef& def = context.def;
-    book.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
-    book.capped = components::caps(book.governance);
-    book.governed = components::governs(book.governance);
+    transfer_.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
+    transfer_.capped = components::caps(transfer_.governance);
+    transfer_.governed = components::governs(transfer_.governance);
 }
 
 void ExchangeSystem::setFlags(uint32_t given) {
@@ -76,14 +80,14 @@ void ExchangeSystem::setFlags(uint32_t given) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "flags is 0x%x; the known flags are 0x%x.", given,
                    kWorldFlags);
     const uint32_t flags = given & kHeatTransferModes;
-    state_.book.objectFlags = given & ~kHeatTransferModes;
-    state_.book.unsent |= flags != 0 && flags != state_.book.flags;
-    state_.book.spreadKnown &= flags == state_.book.flags;
+    transfer_.objectFlags = given & ~kHeatTransferModes;
+    transfer_.unsent |= flags != 0 && flags != transfer_.flags;
+    transfer_.spreadKnown &= flags == transfer_.flags;
     constexpr uint32_t kWarm = FW_WORLD_RADIATION | FW_WORLD_PLUME;
-    state_.book.warms |= (flags & kWarm) != 0;
-    if (state_.book.flags & ~flags & kWarm)
-        state_.book.fades = context_.clock.tick + 2 * gpu::kExchangeRounds * gpu::kExchangeTicks;
-    state_.book.flags = flags;
+    transfer_.warms |= (flags & kWarm) != 0;
+    if (transfer_.flags & ~flags & kWarm)
+        transfer_.fades = context_.clock.tick + 2 * gpu::kExchangeRounds * gpu::kExchangeTicks;
+    transfer_.flags = flags;
     context_.recorder.record(SetFlags{given});
 }
 
@@ -115,35 +119,33 @@ FwHeatOccluderId ExchangeSystem::addHeatOccluder(const FwHeatOccluderDef& def) {
     checkLengths(def.halfSize, 3, "FwHeatOccluderDef::halfSize", 0.0f, 30.0f);
     checkHeatOccluder(entry.pose, def.halfSize, "FwHeatOccluderDef::transform");
     std::copy_n(def.halfSize, 3, entry.halfSize);
-    if (state_.occluders.live() >= gpu::kMaxHeatOccluders)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u occluders are in place; the limit is %u.",
-                   state_.occluders.live(), gpu::kMaxHeatOccluders);
-    const FwHeatOccluderId id = state_.occluders.create(entry);
-    state_.book.occludersDue = true;
+    checkRoom(occluders_, gpu::kMaxHeatOccluders, "occluders");
+    const FwHeatOccluderId id = occluders_.create(entry);
+    transfer_.occludersDue = true;
     return id;
 }
 
 void ExchangeSystem::moveHeatOccluder(FwHeatOccluderId id, const float transform[16]) {
     context_.recorder.mayChange();
     ++scene_.geometryVersion;
-    HeatOccluderEntry& entry = state_.occluders.get(id);
+    HeatOccluderEntry& entry = occluders_.get(id);
     const components::Pose pose = components::makePose(transform, "transform");
     checkHeatOccluder(pose, entry.halfSize, "transform");
     entry.pose = pose;
-    state_.book.occludersDue = true;
-    context_.recorder.record(MoveHeatOccluder{id.index1 - 1, Transform(transform)});
+    transfer_.occludersDue = true;
+    context_.recorder.record(MoveHeatOccluder{{id.index1 - 1, Transform(transform)}});
 }
 
 void ExchangeSystem::removeHeatOccluder(FwHeatOccluderId id) {
     ++scene_.geometryVersion;
-    state_.occluders.destroy(id);
-    state_.book.occludersDue = true;
+    occluders_.destroy(id);
+    transfer_.occludersDue = true;
 }
 
 gpu::ExchangePush ExchangeSystem::rules() const noexcept {
     gpu::ExchangePush rules{};
-    rules.flags = state_.book.flags;
-    rules.warms = state_.book.warms ? 1 : 0;
+    rules.flags = transfer_.flags;
+    rules.warms = transfer_.warms ? 1 : 0;
     const auto up = [&](int i) { return int(std::lround(double(context_.def.up[i]) * 4096)); };
     rules.upX = up(0);
     rules.upY = up(1);
@@ -152,10 +154,10 @@ gpu::ExchangePush ExchangeSystem::rules() const noexcept {
     rules.windX = wind[0] * 1000 / 128;
     rules.windY = wind[1] * 1000 / 128;
     rules.windZ = wind[2] * 1000 / 128;
-    rules.chance = components::chanceOf(state_.book.governance.chance);
-    rules.hopsMost = components::limitOf(state_.book.governance.hopsMost);
-    rules.maxTiles = components::limitOf(state_.book.governance.maxTiles);
-    rules.lifeTicks = components::lifeTicksOf(state_.book.governance.life);
+    rules.chance = components::chanceOf(transfer_.governance.chance);
+    rules.hopsMost = components::limitOf(transfer_.governance.hopsMost);
+    rules.maxTiles = components::limitOf(transfer_.governance.maxTiles);
+    rules.lifeTicks = components::lifeTicksOf(transfer_.governance.life);
     rules.seed = context_.def.seed;
     rules.ambient = uint32_t(fire::kAmbient) * 16;  // 1/16 K
     const double perExchange = kBrandsPerJoule * double(context_.def.paceFactor) *
@@ -172,34 +174,46 @@ void ExchangeSystem::updateWind(Object& object, int wind) noexcept {
 }
 
 void ExchangeSystem::markUnsent(Object& object) noexcept {
-    state_.book.unsent = true;
+    transfer_.unsent = true;
     if (!object.exchangeSent) return;
     object.exchangeSent = false;
-    state_.book.unsentSlots.push_back(object.slot);  // capacity was reserved at its creation
+    FW_ASSERT(transfer_.unsentSlots.size() < transfer_.unsentSlots.capacity(), "%zu records",
+              transfer_.unsentSlots.size());
+    transfer_.unsentSlots.push_back(object.slot);
 }
 
 // Copies the lists that a planned update points to, before they change.
 void ExchangeSystem::keepPlanned() {
     if (frame_.used == 0) return;
     ExchangeTables& tables = *frame_.tables[frame_.used - 1];
-    if (tables.update.neighbours.data() == state_.book.neighbours.pool().all().data()) {
+    if (tables.update.neighbours.data() == transfer_.neighbours.pool().all().data()) {
         tables.neighbours.assign(tables.update.neighbours.begin(), tables.update.neighbours.end());
         tables.update.neighbours = tables.neighbours;
     }
-    if (tables.update.links.data() == state_.book.links.all().data()) {
+    if (tables.update.links.data() == transfer_.links.all().data()) {
         tables.links.assign(tables.update.links.begin(), tables.update.links.end());
         tables.update.links = tables.links;
     }
 }
 
+gpu::ExchangeObject ExchangeSystem::recordOf(const Object& object) const noexcept {
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
+    gpu::ExchangeObject record{};
+    components::placeExchangeObject(object.data.pose, domain, record);
+    components::fillExchangeObject(object.data, domain, object.governance, record);
+    if (object.texels == 0) record.flags &= ~gpu::kExchangeLive;
+    return record;
+}
+
+void ExchangeSystem::updateReach(Object& object) noexcept {
+    object.reach = components::exchangeReach(object.data, scene_.domainOf(object),
+                                             scene_.meshes.at(object.data.meshSlot)->texelsOf);
+}
+
 void ExchangeSystem::latchPoses(uint32_t now) {
-    for (const uint32_t slot : state_.book.due) {
+    for (const uint32_t slot : scene_.moved) {
         Object& object = scene_.objectAt(slot);
-        const mesh::BurnDomain& domain = scene_.domainOf(object);
-        gpu::ExchangeObject record{};
-        components::placeExchangeObject(object.data.pose, domain, record);
-        components::fillExchangeObject(object.data, domain, object.governance, record);
-        if (object.texels == 0) record.flags &= ~gpu::kExchangeLive;
+        gpu::ExchangeObject record = recordOf(object);
         record.high.w = int(wind_.localWindOf(object, now));
         record.neighbourFirst = object.remote.neighbourFirst;
         record.neighbourCount = object.remote.neighbourCount;
@@ -207,53 +221,53 @@ void ExchangeSystem::latchPoses(uint32_t now) {
         if (object.exchangeVersion != 0 && sameRecord(record, object.remote)) continue;
         keepPlanned();
         object.remote = record;
-        object.reach = components::exchangeReach(object.data, domain,
-                                                 scene_.meshes.at(object.data.meshSlot)->texelsOf);
-        // Capacity for these was reserved at its creation.
-        if (object.exchangeVersion == 0 && !object.touched) state_.book.waiting.push_back(slot);
-        object.exchangeVersion = ++state_.book.version;
+        updateReach(object);
+        FW_ASSERT(transfer_.waiting.size() < transfer_.waiting.capacity() || object.exchangeVersion,
+                  "%zu objects wait", transfer_.waiting.size());
+        if (object.exchangeVersion == 0 && !object.touched) transfer_.waiting.push_back(slot);
+        object.exchangeVersion = ++transfer_.version;
         markUnsent(object);
         if (!(record.flags & gpu::kExchangeLive) || slot > Neighbours::kSlot) continue;
-        if (!object.contactsDue) state_.book.contactsDue.push_back(slot);
+        if (!object.contactsDue) transfer_.contactsDue.push_back(slot);
         object.contactsDue = true;
-        if (context_.def.visibility && !object.seenDue) state_.book.seenDue.push_back(slot);
+        if (context_.def.visibility && !object.seenDue) transfer_.seenDue.push_back(slot);
         object.seenDue = context_.def.visibility != nullptr;
         try {
-            state_.book.neighbours.place(slot, boxOf(record), object.reach);
+            transfer_.neighbours.place(slot, boxOf(record), object.reach);
         } catch (...) {
-            state_.book.rebuild = true;
+            transfer_.rebuild = true;
             throw;
         }
     }
-    state_.book.unsent |= !state_.book.neighbours.changed().empty();
-    for (uint32_t slot = 0; wind_.hasGusts() && slot < scene_.objects.slotCount(); ++slot)
-        if (auto* owned = scene_.objects.at(slot))
-            updateWind(**owned, int(wind_.localWindOf(**owned, now)));
-    if (!state_.book.occludersDue) return;
-    state_.book.occluders.clear();
-    for (auto [i, entry] : state_.occluders.entries()) {
+    transfer_.unsent |= !transfer_.neighbours.changed().empty();
+    if (wind_.hasGusts())
+        for (auto [slot, object] : scene_.objects.entries())
+            updateWind(object, int(wind_.localWindOf(object, now)));
+    if (!transfer_.occludersDue) return;
+    transfer_.occluders.clear();
+    for (auto [i, entry] : occluders_.entries()) {
         gpu::HeatOccluder occluder{};
         components::placeHeatOccluder(entry.pose, entry.halfSize, occluder);
-        state_.book.occluders.push_back(occluder);
+        transfer_.occluders.push_back(occluder);
     }
-    state_.book.unsent = true;
+    transfer_.unsent = true;
 }
 
 // All of it from the latched records and the pairs that are known: the lists are those of another
 // world, or memory ended while they changed.
 void ExchangeSystem::rebuild() {
-    TransferState& book = state_.book;
     keepPlanned();
-    book.unsent = true;
-    book.spreadKnown = false;
-    book.neighbours.clear();
-    book.close.clear();
-    book.links.clear();
-    for (auto* lists : {&book.closeOf, &book.linksOf}) {
+    transfer_.unsent = true;
+    transfer_.spreadKnown = false;
+    transfer_.neighbours.clear();
+    transfer_.close.clear();
+    transfer_.links.clear();
+    for (auto* lists : {&transfer_.closeOf, &transfer_.linksOf}) {
         core::growTo(*lists, scene_.objects.slotCount());
         lists->assign(scene_.objects.slotCount(), {});
     }
-    for (auto* slots : {&book.unsentSlots, &book.contactsDue, &book.seenDue, &book.waiting})
+    for (auto* slots :
+         {&transfer_.unsentSlots, &transfer_.contactsDue, &transfer_.seenDue, &transfer_.waiting})
         slots->clear();  // each keeps its capacity
     for (auto [slot, object] : scene_.objects.entries()) {
         const bool placed = object.exchangeVersion != 0;
@@ -262,67 +276,62 @@ void ExchangeSystem::rebuild() {
         object.exchangeSent = !placed;
         object.contactsDue = meets;
         object.seenDue = meets && context_.def.visibility;
-        if (placed) book.unsentSlots.push_back(slot);
-        if (placed && !object.touched) book.waiting.push_back(slot);
-        if (object.contactsDue) book.contactsDue.push_back(slot);
-        if (object.seenDue) book.seenDue.push_back(slot);
-        if (meets) book.neighbours.place(slot, boxOf(object.remote), object.reach);
+        if (placed) transfer_.unsentSlots.push_back(slot);
+        if (placed && !object.touched) transfer_.waiting.push_back(slot);
+        if (object.contactsDue) transfer_.contactsDue.push_back(slot);
+        if (object.seenDue) transfer_.seenDue.push_back(slot);
+        if (meets) transfer_.neighbours.place(slot, boxOf(object.remote), object.reach);
     }
-    std::erase_if(book.pairs, [&](const PairContacts& pair) {
+    std::erase_if(transfer_.pairs, [&](const PairContacts& pair) {
         for (int k = 0; k < 2; ++k) {
             const auto* owned = scene_.objects.at(pair.slots[k]);
             if (!owned || (*owned)->id.generation != pair.ids[k].generation) return true;
         }
         return false;
     });
-    for (uint32_t i = 0; i < book.pairs.size(); ++i) {
-        PairContacts& pair = book.pairs[i];
+    for (uint32_t i = 0; i < transfer_.pairs.size(); ++i) {
+        PairContacts& pair = transfer_.pairs[i];
         pair.versions[0] = pair.versions[1] = 0;
         pair.stamp = 0;
         for (int k = 0; k < 2; ++k) addClose(pair.slots[k], pair.slots[1 - k], i);
     }
     restoreSeen();
-    book.rebuild = false;
+    transfer_.rebuild = false;
 }
 
 // The host's answers of saved pairs hold. An object without any was elsewhere since the host was
 // asked about it: it is asked when the world awakes, as it would have been.
 void ExchangeSystem::restoreSeen() {
-    TransferState& book = state_.book;
-    const auto before = [](const Seen& a, const Seen& b) {
-        return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
-    };
-    std::erase_if(book.seenDue, [&](uint32_t slot) {
+    std::erase_if(transfer_.seenDue, [&](uint32_t slot) {
         bool due = false, holds = false;
-        for (const uint32_t entry : book.neighbours.of(slot)) {
+        for (const uint32_t entry : transfer_.neighbours.of(slot)) {
             const Seen wanted{{slot, entry & Neighbours::kSlot}};
-            const auto known =
-                std::lower_bound(book.loadedSeen.begin(), book.loadedSeen.end(), wanted, before);
+            const auto known = std::lower_bound(transfer_.loadedSeen.begin(),
+                                                transfer_.loadedSeen.end(), wanted, bySlots<Seen>);
             due = true;
-            if (known == book.loadedSeen.end() || before(wanted, *known)) continue;
+            if (known == transfer_.loadedSeen.end() || bySlots(wanted, *known)) continue;
             holds = true;
-            book.neighbours.see(slot, wanted.slots[1], known->part);
+            transfer_.neighbours.see(slot, wanted.slots[1], known->part);
         }
         due &= !holds;
         scene_.objectAt(slot).seenDue = due;
         return !due;
     });
-    book.loadedSeen.clear();
+    transfer_.loadedSeen.clear();
 }
 
 // Pairs of which the host has been asked since one of them was elsewhere, by slots.
 void ExchangeSystem::recordSeen(std::pmr::vector<Seen>& to) const {
-    const TransferState& book = state_.book;
     if (!context_.def.visibility) return;
-    if (book.rebuild) {
-        for (const Seen& seen : book.loadedSeen)
+    if (transfer_.rebuild) {
+        for (const Seen& seen : transfer_.loadedSeen)
             if (scene_.objects.at(seen.slots[0]) && scene_.objects.at(seen.slots[1]))
                 to.push_back({{seen.slots[0], seen.slots[1]}, seen.part});
         return;
     }
     for (auto [slot, owned] : scene_.objects.entries()) {
         if (owned.seenDue) continue;
-        for (const uint32_t entry : book.neighbours.of(slot)) {
+        for (const uint32_t entry : transfer_.neighbours.of(slot)) {
             const uint32_t other = entry & Neighbours::kSlot;
             if (!scene_.objectAt(other).seenDue) to.push_back({{slot, other}, entry >> 24});
         }
@@ -337,18 +346,17 @@ uint32_t ExchangeSystem::seenPart(const Object& from, const Object& to) const {
 
 // In both directions between objects that moved and all their neighbours.
 void ExchangeSystem::queryVisibility() {
-    TransferState& book = state_.book;
-    for (const uint32_t slot : book.seenDue) {
+    for (const uint32_t slot : transfer_.seenDue) {
         const Object& object = scene_.objectAt(slot);
-        for (const uint32_t entry : book.neighbours.of(slot)) {
+        for (const uint32_t entry : transfer_.neighbours.of(slot)) {
             const Object& other = scene_.objectAt(entry & Neighbours::kSlot);
             if (other.seenDue && other.slot < slot) continue;  // asked with that one
-            book.neighbours.see(slot, other.slot, seenPart(other, object));
-            book.neighbours.see(other.slot, slot, seenPart(object, other));
+            transfer_.neighbours.see(slot, other.slot, seenPart(other, object));
+            transfer_.neighbours.see(other.slot, slot, seenPart(object, other));
         }
     }
-    for (const uint32_t slot : book.seenDue) scene_.objectAt(slot).seenDue = false;
-    book.seenDue.clear();
+    for (const uint32_t slot : transfer_.seenDue) scene_.objectAt(slot).seenDue = false;
+    transfer_.seenDue.clear();
 }
 
 namespace {
@@ -375,6 +383,7 @@ void ExchangeSystem::linkPair(const Object& to, const Object& from,
         const double seconds =
             (metres / std::max(double(def.spreadRate), 1e-6) + metres / kGapSpeed) /
             double(context_.def.paceFactor);
+        FW_ASSERT(scene_.domainOf(to).real(contact.texel), "texel %u", contact.texel);
         gpu::ContactLink link{};
         link.object = to.slot;
         link.texel = contact.texel;
@@ -388,29 +397,27 @@ void ExchangeSystem::linkPair(const Object& to, const Object& from,
 
 // Of objects that were latched since the last time. What memory refuses comes with the next call.
 void ExchangeSystem::findLinks(uint32_t now) {
-    TransferState& book = state_.book;
-    if (!(book.flags & FW_WORLD_CONTACT)) return;
-    for (auto* lists : {&book.closeOf, &book.linksOf})
+    if (!(transfer_.flags & FW_WORLD_CONTACT)) return;
+    for (auto* lists : {&transfer_.closeOf, &transfer_.linksOf})
         if (lists->size() < scene_.objects.slotCount()) {
             core::growTo(*lists, scene_.objects.slotCount());
             lists->resize(scene_.objects.slotCount());
         }
-    for (const uint32_t slot : book.contactsDue) linkClose(scene_.objectAt(slot), now);
-    for (const uint32_t slot : book.contactsDue) scene_.objectAt(slot).contactsDue = false;
-    book.contactsDue.clear();
+    for (const uint32_t slot : transfer_.contactsDue) linkClose(scene_.objectAt(slot), now);
+    for (const uint32_t slot : transfer_.contactsDue) scene_.objectAt(slot).contactsDue = false;
+    transfer_.contactsDue.clear();
 }
 
 // The contacts of one object with all that are so near.
 void ExchangeSystem::linkClose(Object& object, uint32_t now) {
-    TransferState& book = state_.book;
-    const uint64_t stamp = ++book.contactStamp;
+    const uint64_t stamp = ++transfer_.contactStamp;
     const auto meet = [&](uint32_t other) {
         if (mesh::gapOf(boxOf(object.remote), boxOf(scene_.objectAt(other).remote)) >
             int(gpu::kContactGap))
             return;
         const Object& a = object.slot < other ? object : scene_.objectAt(other);
         const Object& b = object.slot < other ? scene_.objectAt(other) : object;
-        PairContacts& pair = book.pairs[closePair(a.slot, b.slot)];
+        PairContacts& pair = transfer_.pairs[closePair(a.slot, b.slot)];
         pair.stamp = stamp;
         if (pair.versions[0] == a.exchangeVersion && pair.versions[1] == b.exchangeVersion) return;
         pair.versions[0] = pair.versions[1] = 0;  // until all of it is there
@@ -423,23 +430,24 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         const Object* const both[2] = {&a, &b};
         mesh::findContacts({{&scene_.domainOf(a), &a.remote, burnMask(a.data)},
                             {&scene_.domainOf(b), &b.remote, burnMask(b.data)}},
-                           book.contacts);
+                           transfer_.contacts);
         for (int k = 0; k < 2; ++k) {
-            book.pairLinks.clear();
-            linkPair(*both[k], *both[1 - k], book.contacts.found[k], since, book.pairLinks);
-            addLinks(both[k]->slot, book.pairLinks);
+            transfer_.pairLinks.clear();
+            linkPair(*both[k], *both[1 - k], transfer_.contacts.found[k], since,
+                     transfer_.pairLinks);
+            addLinks(both[k]->slot, transfer_.pairLinks);
         }
         pair.since = since;
-        pair.touches = !book.contacts.found[0].empty() || !book.contacts.found[1].empty();
+        pair.touches = !transfer_.contacts.found[0].empty() || !transfer_.contacts.found[1].empty();
         pair.ids[0] = a.id;
         pair.ids[1] = b.id;
         pair.versions[0] = a.exchangeVersion;
         pair.versions[1] = b.exchangeVersion;
-        book.links.fit(book.linksOf[other]);
+        transfer_.links.fit(transfer_.linksOf[other]);
     };
     // Where all objects are latched as they stand now, the few that are so near are found among
     // all; else among its neighbours, which are many.
-    if (book.due.empty() || frame_.latched) {
+    if (scene_.moved.empty() || frame_.latched) {
         const mesh::Box box = boxOf(object.remote);
         for (const uint32_t other : scene_.objectsNear(box, 0.001f * float(gpu::kContactGap))) {
             const Object& o = scene_.objectAt(other);
@@ -448,17 +456,17 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
                 meet(other);
         }
     } else {
-        for (const uint32_t entry : book.neighbours.of(object.slot))
+        for (const uint32_t entry : transfer_.neighbours.of(object.slot))
             meet(entry & Neighbours::kSlot);
     }
-    const ListPlace& close = book.closeOf[object.slot];
+    const ListPlace& close = transfer_.closeOf[object.slot];
     for (uint32_t i = close.count; i-- > 0;)
-        if (const CloseObject gone = book.close.of(close)[i];
-            book.pairs[gone.pair].stamp != stamp) {
+        if (const CloseObject gone = transfer_.close.of(close)[i];
+            transfer_.pairs[gone.pair].stamp != stamp) {
             dropPair(gone.pair);
-            book.links.fit(book.linksOf[gone.slot]);
+            transfer_.links.fit(transfer_.linksOf[gone.slot]);
         }
-    book.links.fit(book.linksOf[object.slot]);
+    transfer_.links.fit(transfer_.linksOf[object.slot]);
 }
 
 namespace {
@@ -473,68 +481,70 @@ uint32_t closeIndex(std::span<const CloseObject> list, uint32_t slot) noexcept {
 }  // namespace
 
 void ExchangeSystem::addClose(uint32_t slot, uint32_t other, uint32_t pair) {
-    ListPlace& list = state_.book.closeOf[slot];
-    state_.book.close.reserve(list, list.count + 1);
-    state_.book.close.insert(list, closeIndex(state_.book.close.of(list), other), {other, pair});
+    FW_ASSERT(slot < transfer_.closeOf.size(), "%u of %zu lists", slot, transfer_.closeOf.size());
+    ListPlace& list = transfer_.closeOf[slot];
+    transfer_.close.reserve(list, list.count + 1);
+    transfer_.close.insert(list, closeIndex(transfer_.close.of(list), other), {other, pair});
 }
 
 // Their pair, which may be new.
 uint32_t ExchangeSystem::closePair(uint32_t a, uint32_t b) {
-    TransferState& book = state_.book;
-    const std::span<const CloseObject> list = book.close.of(book.closeOf[a]);
+    const std::span<const CloseObject> list = transfer_.close.of(transfer_.closeOf[a]);
     if (const uint32_t at = closeIndex(list, b); at < list.size() && list[at].slot == b)
         return list[at].pair;
-    const auto pair = uint32_t(book.pairs.size());
-    book.close.reserve(book.closeOf[b], book.closeOf[b].count + 1);  // the second then finds room
-    core::growTo(book.pairs, pair + 1);
+    FW_ASSERT(a < b, "objects %u and %u", a, b);
+    const auto pair = uint32_t(transfer_.pairs.size());
+    transfer_.close.reserve(transfer_.closeOf[b],
+                            transfer_.closeOf[b].count + 1);  // the second then finds room
+    core::growTo(transfer_.pairs, pair + 1);
     addClose(a, b, pair);
     addClose(b, a, pair);
-    book.pairs.push_back({{a, b}});
+    transfer_.pairs.push_back({{a, b}});
     return pair;
 }
 
 // The two are apart, or one of them is gone.
 void ExchangeSystem::dropPair(uint32_t pair) noexcept {
-    TransferState& book = state_.book;
     const auto entryOf = [&](const PairContacts& of, int k) {
-        return closeIndex(book.close.of(book.closeOf[of.slots[k]]), of.slots[1 - k]);
+        return closeIndex(transfer_.close.of(transfer_.closeOf[of.slots[k]]), of.slots[1 - k]);
     };
-    const PairContacts gone = book.pairs[pair];
+    FW_ASSERT(pair < transfer_.pairs.size(), "%u of %zu pairs", pair, transfer_.pairs.size());
+    const PairContacts gone = transfer_.pairs[pair];
     for (int k = 0; k < 2; ++k) {
         dropLinks(gone.slots[k], gone.slots[1 - k]);
-        book.close.erase(book.closeOf[gone.slots[k]], entryOf(gone, k));
+        transfer_.close.erase(transfer_.closeOf[gone.slots[k]], entryOf(gone, k));
     }
-    const PairContacts& last = book.pairs.back();  // takes its place
-    if (pair + 1 != book.pairs.size())
+    const PairContacts& last = transfer_.pairs.back();  // takes its place
+    if (pair + 1 != transfer_.pairs.size())
         for (int k = 0; k < 2; ++k)
-            book.close.of(book.closeOf[last.slots[k]])[entryOf(last, k)].pair = pair;
-    book.pairs[pair] = last;
-    book.pairs.pop_back();
+            transfer_.close.of(transfer_.closeOf[last.slots[k]])[entryOf(last, k)].pair = pair;
+    transfer_.pairs[pair] = last;
+    transfer_.pairs.pop_back();
 }
 
 void ExchangeSystem::dropLinks(uint32_t to, uint32_t from) noexcept {
-    ListPlace& place = state_.book.linksOf[to];
-    const std::span<gpu::ContactLink> list = state_.book.links.of(place);
+    FW_ASSERT(to < transfer_.linksOf.size(), "%u of %zu lists", to, transfer_.linksOf.size());
+    ListPlace& place = transfer_.linksOf[to];
+    const std::span<gpu::ContactLink> list = transfer_.links.of(place);
     const auto end = std::remove_if(list.begin(), list.end(), [&](const gpu::ContactLink& link) {
         return link.fromObject == from;
     });
     if (end == list.end()) return;
     std::fill(end, list.end(), TransferState::noLink());
-    state_.book.links.mark(place.first, place.count);
+    transfer_.links.mark(place.first, place.count);
     place.count = uint32_t(end - list.begin());
 }
 
 void ExchangeSystem::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
     if (fresh.empty()) return;
-    TransferState& book = state_.book;
-    ListPlace& place = book.linksOf[to];
+    ListPlace& place = transfer_.linksOf[to];
     std::sort(fresh.begin(), fresh.end(), before);
-    const std::span<const gpu::ContactLink> list = book.links.of(place);
-    book.mergedLinks.clear();
+    const std::span<const gpu::ContactLink> list = transfer_.links.of(place);
+    transfer_.mergedLinks.clear();
     std::merge(list.begin(), list.end(), fresh.begin(), fresh.end(),
-               std::back_inserter(book.mergedLinks), before);
-    book.links.reserve(place, uint32_t(book.mergedLinks.size()));
-    book.links.assign(place, book.mergedLinks);
+               std::back_inserter(transfer_.mergedLinks), before);
+    transfer_.links.reserve(place, uint32_t(transfer_.mergedLinks.size()));
+    transfer_.links.assign(place, transfer_.mergedLinks);
 }
 
 // The next object in its slot does not inherit its contacts. The backend gets the change before the
@@ -542,58 +552,56 @@ void ExchangeSystem::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
 void ExchangeSystem::forgetObject(const Object& object) noexcept {
     countGoverned(object, false);
     removeFromShield(object.slot);
-    TransferState& book = state_.book;
-    book.unsent |= object.exchangeVersion != 0;
+    transfer_.unsent |= object.exchangeVersion != 0;
     const uint32_t slot = object.slot;
     const auto leave = [&](std::pmr::vector<uint32_t>& slots, bool in) {
-        if (in || book.rebuild) std::erase(slots, slot);
+        if (in || transfer_.rebuild) std::erase(slots, slot);
     };
-    leave(book.due, object.exchangeDue);
-    leave(book.unsentSlots, !object.exchangeSent);
-    leave(book.waiting, object.exchangeVersion != 0);
-    leave(book.contactsDue, object.contactsDue);
-    leave(book.seenDue, object.seenDue);
-    if (book.rebuild) {  // its lists are none
-        std::erase_if(book.pairs, [&](const PairContacts& pair) {
+    leave(transfer_.unsentSlots, !object.exchangeSent);
+    leave(transfer_.waiting, object.exchangeVersion != 0);
+    leave(transfer_.contactsDue, object.contactsDue);
+    leave(transfer_.seenDue, object.seenDue);
+    if (transfer_.rebuild) {  // its lists are none
+        std::erase_if(transfer_.pairs, [&](const PairContacts& pair) {
             return pair.slots[0] == slot || pair.slots[1] == slot;
         });
-        std::erase_if(book.loadedSeen, [&](const Seen& seen) {
+        std::erase_if(transfer_.loadedSeen, [&](const Seen& seen) {
             return seen.slots[0] == slot || seen.slots[1] == slot;
         });
         return;
     }
-    if (slot < book.closeOf.size()) {
-        const ListPlace& close = book.closeOf[slot];
-        while (close.count != 0) dropPair(book.close.of(close).back().pair);
-        book.close.drop(book.closeOf[slot]);
-        book.links.drop(book.linksOf[slot]);
+    if (slot < transfer_.closeOf.size()) {
+        const ListPlace& close = transfer_.closeOf[slot];
+        while (close.count != 0) dropPair(transfer_.close.of(close).back().pair);
+        transfer_.close.drop(transfer_.closeOf[slot]);
+        transfer_.links.drop(transfer_.linksOf[slot]);
     }
-    book.neighbours.remove(slot);
+    transfer_.neighbours.remove(slot);
 }
 
 // awake: the step will run.
 void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
     if (!isOn()) return;
-    if (state_.book.rebuild) rebuild();
+    if (transfer_.rebuild) rebuild();
     step.rules = rules();
     step.exchange = step.reduce;
-    step.governed = state_.book.governed;
-    step.capped = state_.book.capped;
+    step.governed = transfer_.governed;
+    step.capped = transfer_.capped;
     if (now % gpu::kExchangeTicks == 0) {
         latchPoses(now);
         frame_.latched = true;
     }
     planOcclusion(step, awake);
-    if (!awake || !state_.book.unsent) return;
+    if (!awake || !transfer_.unsent) return;
     if (frame_.flushed && now % gpu::kExchangeTicks != 0) return;
     keepPlanned();
     queryVisibility();
     findLinks(now);
-    for (const uint32_t slot : state_.book.neighbours.changed()) {
+    for (const uint32_t slot : transfer_.neighbours.changed()) {
         auto* owned = scene_.objects.at(slot);
         if (!owned) continue;
         Object& object = **owned;
-        const ListPlace list = state_.book.neighbours.listOf(slot);
+        const ListPlace list = transfer_.neighbours.listOf(slot);
         if (object.remote.neighbourFirst == list.first &&
             object.remote.neighbourCount == list.count)
             continue;
@@ -606,14 +614,14 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
             core::Owned<ExchangeTables>::make(context_.memory, context_.memory));
     ExchangeTables& tables = *frame_.tables[frame_.used];
     tables.objects.clear();
-    core::growTo(tables.objects, state_.book.unsentSlots.size());
-    for (const uint32_t slot : state_.book.unsentSlots)
+    core::growTo(tables.objects, transfer_.unsentSlots.size());
+    for (const uint32_t slot : transfer_.unsentSlots)
         tables.objects.push_back({slot, scene_.objectAt(slot).remote});
-    state_.book.neighbours.pool().listChanges(tables.neighbourRanges);
-    state_.book.links.listChanges(tables.linkRanges);
-    tables.occluders.assign(state_.book.occluders.begin(), state_.book.occluders.end());
-    tables.update = {tables.objects,         state_.book.neighbours.pool().all(),
-                     tables.neighbourRanges, state_.book.links.all(),
+    transfer_.neighbours.pool().listChanges(tables.neighbourRanges);
+    transfer_.links.listChanges(tables.linkRanges);
+    tables.occluders.assign(transfer_.occluders.begin(), transfer_.occluders.end());
+    tables.update = {tables.objects,         transfer_.neighbours.pool().all(),
+                     tables.neighbourRanges, transfer_.links.all(),
                      tables.linkRanges,      tables.occluders};
     step.remote = &tables.update;
     ++frame_.used;
@@ -622,31 +630,31 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
 
 // After all that the frame reached was touched.
 void ExchangeSystem::commit(bool spreadFound, bool waitersTouched) noexcept {
-    if (frame_.occlusionSent) state_.shield.unsent = false;
+    if (frame_.occlusionSent) shield_.unsent = false;
     if (frame_.latched) {
-        for (const uint32_t slot : state_.book.due) scene_.objectAt(slot).exchangeDue = false;
-        state_.book.due.clear();
-        state_.book.occludersDue = false;
+        for (const uint32_t slot : scene_.moved) scene_.objectAt(slot).exchangeDue = false;
+        scene_.moved.clear();
+        transfer_.occludersDue = false;
     }
-    state_.book.spreadKnown |= spreadFound;
+    transfer_.spreadKnown |= spreadFound;
     if (waitersTouched)
-        std::erase_if(state_.book.waiting,
+        std::erase_if(transfer_.waiting,
                       [&](uint32_t slot) { return scene_.objectAt(slot).touched; });
     if (!frame_.flushed) return;
-    for (const uint32_t slot : state_.book.unsentSlots) scene_.objectAt(slot).exchangeSent = true;
-    state_.book.unsentSlots.clear();
-    state_.book.neighbours.settle();
-    state_.book.links.settle();
-    state_.book.unsent = false;
+    for (const uint32_t slot : transfer_.unsentSlots) scene_.objectAt(slot).exchangeSent = true;
+    transfer_.unsentSlots.clear();
+    transfer_.neighbours.settle();
+    transfer_.links.settle();
+    transfer_.unsent = false;
 }
 
 // The world is governed while an object or its def limits fire.
 void ExchangeSystem::countGoverned(const Object& object, bool more) noexcept {
-    state_.book.cappedObjects += components::caps(object.governance) ? (more ? 1u : ~0u) : 0u;
-    state_.book.governedObjects += components::governs(object.governance) ? (more ? 1u : ~0u) : 0u;
-    state_.book.capped = state_.book.cappedObjects != 0 || components::caps(state_.book.governance);
-    state_.book.governed =
-        state_.book.governedObjects != 0 || components::governs(state_.book.governance);
+    transfer_.cappedObjects += components::caps(object.governance) ? (more ? 1u : ~0u) : 0u;
+    transfer_.governedObjects += components::governs(object.governance) ? (more ? 1u : ~0u) : 0u;
+    transfer_.capped = transfer_.cappedObjects != 0 || components::caps(transfer_.governance);
+    transfer_.governed =
+        transfer_.governedObjects != 0 || components::governs(transfer_.governance);
 }
 
 void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) noexcept {
@@ -656,7 +664,7 @@ void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) n
         ++object.changes;
         const uint32_t giver = gpu::igniterOf(now.litBy);
         // A slot may be another's since.
-        const auto* by = giver < scene_.objects.slotCount() ? scene_.objects.at(giver) : nullptr;
+        const auto* by = scene_.objects.findSlot(giver);
         if (now.litTick != 0 && by && (*by)->firstFrame <= readback.frameIndex) {
             const gpu::ExchangeObject& box = object.remote;
             const int low[3] = {box.turn0.w, box.turn1.w, box.turn2.w};
@@ -685,29 +693,93 @@ void ExchangeSystem::beginFrame() noexcept {
     frame_.latched = frame_.flushed = frame_.occlusionSent = false;
 }
 
-void ExchangeSystem::markMoved(Object& object) noexcept {
-    if (object.exchangeDue) return;  // at most once each: capacity was reserved at its creation
-    object.exchangeDue = true;
-    state_.book.due.push_back(object.slot);
-}
-
-void ExchangeSystem::addObject(const Object& object) noexcept {
-    state_.book.due.push_back(object.slot);
-    countGoverned(object, true);
-}
+void ExchangeSystem::addObject(const Object& object) noexcept { countGoverned(object, true); }
 
 void ExchangeSystem::reserveSlots() {
-    TransferState& book = state_.book;
     for (auto* slots :
-         {&book.due, &book.unsentSlots, &book.waiting, &book.contactsDue, &book.seenDue})
+         {&transfer_.unsentSlots, &transfer_.waiting, &transfer_.contactsDue, &transfer_.seenDue})
         core::growTo(*slots, scene_.objects.slotCount());
 }
 
+// ---- saves ------------------------------------------------------------------------------------
+
+void ExchangeSystem::capture(ExchangeSnapshot& to) const {
+    to.flags = transfer_.flags | transfer_.objectFlags;
+    to.warms = transfer_.warms;
+    to.occludersDue = transfer_.occludersDue;
+    to.fades = transfer_.fades;
+    to.pairs.clear();
+    std::ranges::copy_if(transfer_.pairs, std::back_inserter(to.pairs), &PairContacts::touches);
+    std::sort(to.pairs.begin(), to.pairs.end(), bySlots<PairContacts>);
+    to.seen.clear();
+    recordSeen(to.seen);
+    captureSlots(occluders_, to.occluders);
+    to.latchedOccluders = transfer_.occluders;
+    to.heatOcclusion = shield_.grid;
+}
+
+void ExchangeSystem::checkSnapshot(const ExchangeSnapshot& from) {
+    checkSlots(from.occluders, occluders_, "occluder", "occluders");
+    if ((from.flags & ~kWorldFlags) != 0)
+        core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
+                   from.flags, kWorldFlags);
+    checkCount(from.latchedOccluders.size(), gpu::kMaxHeatOccluders, "latched occluders");
+    if (std::ranges::adjacent_find(from.seen, [](const Seen& a, const Seen& b) {
+            return !bySlots(a, b);
+        }) != from.seen.end())
+        core::fail(FW_ERROR_BAD_DATA, "The save's order of lines of sight is out of its limits.");
+    transfer_.pairs.reserve(from.pairs.size());
+    transfer_.loadedSeen.reserve(from.seen.size());
+    transfer_.occluders.reserve(from.latchedOccluders.size());
+}
+
+void ExchangeSystem::restore(ExchangeSnapshot& from) noexcept {
+    transfer_.flags = from.flags & kHeatTransferModes;
+    transfer_.objectFlags = from.flags & ~kHeatTransferModes;
+    transfer_.warms = from.warms;
+    transfer_.fades = from.fades;
+    transfer_.unsent = transfer_.rebuild = true;
+    transfer_.occludersDue = from.occludersDue;
+    transfer_.occluders.assign(from.latchedOccluders.begin(), from.latchedOccluders.end());
+    for (const auto& occluder : from.occluders) *occluders_.at(occluder.slot) = occluder;
+    transfer_.pairs.clear();
+    FW_ASSERT(from.pairs.size() <= transfer_.pairs.capacity() &&
+                  from.seen.size() <= transfer_.loadedSeen.capacity() &&
+                  from.latchedOccluders.size() <= transfer_.occluders.capacity(),
+              "%zu pairs, %zu lines of sight", from.pairs.size(), from.seen.size());
+    for (PairContacts pair : from.pairs) {
+        for (int k = 0; k < 2; ++k) pair.ids[k] = scene_.objects.idOf(pair.slots[k]);
+        pair.versions[0] = pair.versions[1] = 0;  // its links are found again
+        pair.stamp = 0;
+        pair.touches = true;
+        transfer_.pairs.push_back(pair);
+    }
+    transfer_.loadedSeen.assign(from.seen.begin(), from.seen.end());
+    shield_.commandSlots.clear();
+    adoptOcclusion(from.heatOcclusion);
+}
+
+// The record of one that no move made stale follows from its pose, but for the wind that it was
+// latched in.
+void ExchangeSystem::restoreObject(Object& object, bool placed) noexcept {
+    object.exchangeSent = false;
+    object.exchangeVersion = placed ? ++transfer_.version : 0;
+    if (object.exchangeDue) scene_.moved.push_back(object.slot);
+    if (!placed) {
+        object.remote = {};
+        return;
+    }
+    const int wind = object.remote.high.w;
+    if (!object.exchangeDue) object.remote = recordOf(object);
+    object.remote.high.w = wind;
+    updateReach(object);
+}
+
 void ExchangeSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, occluder] : state_.occluders.entries())
+    for (auto [i, occluder] : occluders_.entries())
         checkMoved(occluder.pose.translation, by, "occluder", i);
-    if (state_.shield.grid.shape.cells() != 0)
-        checkMillimetres(state_.shield.grid.shape.origin, by, "heat shield", 0);
+    if (shield_.grid.shape.cells() != 0)
+        checkMillimetres(shield_.grid.shape.origin, by, "heat shield", 0);
 }
 
 std::pmr::vector<Seen> ExchangeSystem::recordedSeen() const {
@@ -720,26 +792,25 @@ std::pmr::vector<Seen> ExchangeSystem::recordedSeen() const {
 void ExchangeSystem::shiftOrigin(const double (&by)[3]) noexcept {
     for (auto [i, owned] : scene_.objects.entries())
         if (owned.exchangeVersion != 0) moveRecord(owned.remote, by);
-    TransferState& book = state_.book;
-    book.rebuild = book.unsent = true;  // its grid is of the places before
-    for (auto [i, occluder] : state_.occluders.entries()) moveBy(occluder.pose.translation, by);
-    for (gpu::HeatOccluder& occluder : book.occluders) {
+    transfer_.rebuild = transfer_.unsent = true;  // its grid is of the places before
+    for (auto [i, occluder] : occluders_.entries()) moveBy(occluder.pose.translation, by);
+    for (gpu::HeatOccluder& occluder : transfer_.occluders) {
         gpu::ivec4* turns[] = {&occluder.turn0, &occluder.turn1, &occluder.turn2};
         for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
     }
-    if (state_.shield.grid.shape.cells() == 0) return;
-    moveMillimetres(state_.shield.grid.shape.origin, by);
-    state_.shield.unsent = state_.shield.unpacked = true;
+    if (shield_.grid.shape.cells() == 0) return;
+    moveMillimetres(shield_.grid.shape.origin, by);
+    shield_.unsent = shield_.unpacked = true;
 }
 
 ExchangeSystem::Memory ExchangeSystem::memory() const noexcept {
     Memory bytes;
-    bytes.neighbours = state_.book.neighbours.bytes();
+    bytes.neighbours = transfer_.neighbours.bytes();
     for (const auto& tables : frame_.tables)
         bytes.neighbours += tables->objects.capacity() * sizeof(gpu::ExchangeUpdate::Placed) +
                             tables->neighbours.capacity() * sizeof(uint32_t);
-    bytes.contacts = state_.book.links.bytes() + state_.book.close.bytes() +
-                     state_.book.pairs.capacity() * sizeof(PairContacts);
+    bytes.contacts = transfer_.links.bytes() + transfer_.close.bytes() +
+                     transfer_.pairs.capacity() * sizeof(PairContacts);
     return bytes;
 }
 

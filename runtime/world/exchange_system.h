@@ -7,6 +7,7 @@
 #include "world/command.h"
 #include "world/neighbours.h"
 #include "world/scene.h"
+#include "world/slotted.h"
 
 namespace fw::world {
 
@@ -63,6 +64,33 @@ struct Seen {
     }
 };
 
+struct ExchangeSnapshot {
+    explicit ExchangeSnapshot(std::pmr::memory_resource* memory)
+        : pairs(memory),
+          seen(memory),
+          occluders(memory),
+          latchedOccluders(memory),
+          heatOcclusion(memory) {}
+    uint32_t flags = 0;  // FwWorldFlags
+    bool warms = false, occludersDue = false;
+    uint64_t fades = 0;                    // tick
+    std::pmr::vector<PairContacts> pairs;  // that touch
+    std::pmr::vector<Seen> seen;
+    SlottedList<HeatOccluderEntry> occluders;
+    std::pmr::vector<gpu::HeatOccluder> latchedOccluders;
+    components::HeatOcclusion heatOcclusion;
+
+    template <class A>
+    void serialize(A& a) {
+        a(flags, warms, occludersDue, fades);
+        a.list("pairs that touch", pairs, 12);
+        a.list("pairs whose sight is known", seen, 12);
+        a.list("occluders", occluders, 64);
+        a.list("latched occluders", latchedOccluders, 64);
+        a(heatOcclusion);
+    }
+};
+
 // Neighbours and contacts of latched objects. Kept across frames, so that a frame searches only for
 // what moved. A frame that fails leaves it stale at worst: the next one sends it again.
 struct TransferState {
@@ -83,7 +111,6 @@ struct TransferState {
     bool occludersDue = false;
     bool warms = false;  // radiation or plumes were on at some time
     uint64_t fades = 0;  // tick until which heat received from switched-off modes fades
-    std::pmr::vector<uint32_t> due{memory};          // slots to latch
     std::pmr::vector<uint32_t> unsentSlots{memory};  // of records that the backend lacks
     uint32_t version = 0;                            // of the last latched object
     Neighbours neighbours{memory};                   // of latched boxes
@@ -130,13 +157,7 @@ struct ExchangeTables {
     gpu::ExchangeUpdate update;
 };
 
-struct ExchangeState {
-    explicit ExchangeState(std::pmr::memory_resource* memory)
-        : occluders("HeatOccluder", memory), book(memory), shield(memory) {}
-    core::HandlePool<FwHeatOccluderId, HeatOccluderEntry> occluders;
-    TransferState book;
-    HeatOcclusionState shield;
-};
+using HeatOccluders = core::HandlePool<FwHeatOccluderId, HeatOccluderEntry>;
 
 class ExchangeSystem {
  public:
@@ -155,10 +176,9 @@ class ExchangeSystem {
     // ones; `waitersTouched`: all that waited.
     void commit(bool spreadFound, bool waitersTouched) noexcept;
     void onCounters(Object& object, const gpu::Readback& readback) noexcept;
-    void addObject(const Object& object) noexcept;     // capacity is reserved
+    void addObject(const Object& object) noexcept;
     void forgetObject(const Object& object) noexcept;  // that goes
-    void markMoved(Object& object) noexcept;
-    void forgetSpread() noexcept { state_.book.spreadKnown = false; }
+    void forgetSpread() noexcept { transfer_.spreadKnown = false; }
     void reserveSlots();                           // throws std::bad_alloc
     void checkShift(const double (&by)[3]) const;  // throws
     // Throws std::bad_alloc; then nothing has changed.
@@ -166,16 +186,32 @@ class ExchangeSystem {
     void shiftOrigin(const double (&by)[3]) noexcept;
     // After a shift that had the lists of neighbours rebuilt.
     void restoreSeen(std::pmr::vector<Seen>& seen) noexcept {
-        if (state_.book.rebuild) state_.book.loadedSeen.swap(seen);
+        if (transfer_.rebuild) transfer_.loadedSeen.swap(seen);
     }
 
-    [[nodiscard]] const ExchangeState& state() const noexcept { return state_; }
+    void apply(const SetFlags& command) { setFlags(command.flags); }
+    void apply(const MoveHeatOccluder& command) {
+        moveHeatOccluder(occluders_.findId(command.slot), command.transform.matrix().data());
+    }
+    void apply(const SetHeatShield& command);
+    void apply(const SetShieldCells& command);
+    void apply(const AddShieldObject& command);
+    void capture(ExchangeSnapshot& to) const;
+    // Throws unless restore takes it; then it needs no memory.
+    void checkSnapshot(const ExchangeSnapshot& from);
+    void restore(ExchangeSnapshot& from) noexcept;  // before objects are
+    void restoreObject(Object& object, bool placed) noexcept;
+
+    [[nodiscard]] const TransferState& transfer() const noexcept { return transfer_; }
+    [[nodiscard]] const HeatOccluders& occluders() const noexcept { return occluders_; }
+    [[nodiscard]] const components::HeatOcclusion& occlusionGrid() const noexcept {
+        return shield_.grid;
+    }
     [[nodiscard]] bool isOn() const noexcept {
-        return state_.book.flags != 0 || state_.book.governed ||
-               context_.clock.tick < state_.book.fades;
+        return transfer_.flags != 0 || transfer_.governed || context_.clock.tick < transfer_.fades;
     }
     [[nodiscard]] uint64_t pairsExamined() const noexcept {
-        return state_.book.neighbours.examined();
+        return transfer_.neighbours.examined();
     }
     [[nodiscard]] components::OcclusionView occlusionView();
     struct Memory {
@@ -184,9 +220,10 @@ class ExchangeSystem {
     [[nodiscard]] Memory memory() const noexcept;
 
  private:
-    friend class PersistenceSystem;
     // exchange_system.cpp
     void latchPoses(uint32_t now);
+    [[nodiscard]] gpu::ExchangeObject recordOf(const Object& object) const noexcept;
+    void updateReach(Object& object) noexcept;
     void updateWind(Object& object, int wind) noexcept;
     void markUnsent(Object& object) noexcept;  // its record
     void rebuild();
@@ -213,9 +250,6 @@ class ExchangeSystem {
                            std::pmr::vector<components::OcclusionCell>& baked);
     void uploadOcclusion(const components::HeatOcclusion& made,
                          std::span<const uint32_t> slots) noexcept;
-    void applyShield(const SetHeatShield& command);
-    void applyShieldCells(const SetShieldCells& command);
-    void applyShieldObject(const AddShieldObject& command);
     void adoptOcclusion(components::HeatOcclusion& made) noexcept;  // takes its cells
     void occlusionChanged() noexcept;
     void removeFromShield(uint32_t slot) noexcept;
@@ -225,7 +259,9 @@ class ExchangeSystem {
     const WorldContext& context_;
     Scene& scene_;
     const WindSystem& wind_;
-    ExchangeState state_{context_.memory};
+    TransferState transfer_{context_.memory};
+    HeatOccluders occluders_{"HeatOccluder", context_.memory};
+    HeatOcclusionState shield_{context_.memory};
     // Of a frame: tables of its updates, of which `used` are planned.
     struct Frame {
         explicit Frame(std::pmr::memory_resource* memory) : tables(memory) {}

@@ -4,7 +4,8 @@
 #include "shared/exchange.h"
 #include "shared/field_draw.h"
 #include "world/burn_system.h"
-#include "world/persistence.h"
+#include "world/geometry.h"
+#include "world/recording.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
 
@@ -26,15 +27,13 @@ FieldSystem::FieldSystem(const WorldContext& context, Scene& scene, const WindSy
     : context_(context), scene_(scene), wind_(wind), burn_(burn) {}
 
 FwParticleFieldId FieldSystem::create(const FwParticleFieldDef& def) {
-    if (state_.fields.live() >= gpu::kMaxFields)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u particle fields are there; the limit is %u.",
-                   state_.fields.live(), gpu::kMaxFields);
+    checkRoom(fields_, gpu::kMaxFields, "particle fields");
     auto field = core::Owned<Field>::make(context_.memory, context_.memory);
     components::makeParticleField(def, context_.def.seed * 0x9E3779B9u + made_ + 1, field->data);
     field->began = context_.clock.tick;
     field->firstFrame = context_.lastFrame + 1;
     // A field steps at most once in a step of the world.
-    runs_.reserve(size_t(state_.fields.live() + 1) * kMaxSteps);
+    runs_.reserve(size_t(fields_.live() + 1) * kMaxSteps);
     rounds_.reserve(kMaxSteps);
     draws_.reserve(gpu::kMaxFields);
     drawn_.reserve(gpu::kMaxFields);
@@ -44,11 +43,11 @@ FwParticleFieldId FieldSystem::create(const FwParticleFieldDef& def) {
         field::maskField(*field->cells, field->data.masks);
     }
     const Field& made = *field;
-    const FwParticleFieldId id = state_.fields.create(std::move(field));
+    const FwParticleFieldId id = fields_.create(std::move(field));
     try {
         context_.backend.createField(id.index1 - 1, rulesOf(made.data), made.data.masks);
     } catch (...) {
-        state_.fields.destroy(id);
+        fields_.destroy(id);
         throw;
     }
     ++made_;
@@ -56,13 +55,13 @@ FwParticleFieldId FieldSystem::create(const FwParticleFieldDef& def) {
 }
 
 void FieldSystem::destroy(FwParticleFieldId id) {
-    (void)state_.fields.get(id);
+    (void)fields_.get(id);
     context_.backend.destroyField(id.index1 - 1);
-    state_.fields.destroy(id);
+    fields_.destroy(id);
 }
 
 void FieldSystem::move(FwParticleFieldId id, const float position[3], const float rotation[4]) {
-    components::ParticleField& field = state_.fields.get(id)->data;
+    components::ParticleField& field = fields_.get(id)->data;
     const bool wets = (field.flags & FW_FIELD_WETS) != 0;
     if (wets) context_.recorder.mayChange();
     components::setFieldPlace(field, position, rotation);
@@ -75,27 +74,26 @@ void FieldSystem::move(FwParticleFieldId id, const float position[3], const floa
 }
 
 void FieldSystem::setAmount(FwParticleFieldId id, float amount) {
-    components::ParticleField& field = state_.fields.get(id)->data;
+    components::ParticleField& field = fields_.get(id)->data;
     const bool wets = (field.flags & FW_FIELD_WETS) != 0;
     if (wets) context_.recorder.mayChange();
     components::setFieldAmount(field, amount);
     context_.backend.setFieldRules(id.index1 - 1, rulesOf(field));
-    if (wets) context_.recorder.record(SetFieldAmount{id.index1 - 1, amount});
+    if (wets) context_.recorder.record(SetFieldAmount{{id.index1 - 1, amount}});
 }
 
 void FieldSystem::setHidden(FwParticleFieldId id, bool hidden) {
-    uint32_t& flags = state_.fields.get(id)->data.flags;
-    flags = (flags & ~uint32_t(FW_FIELD_HIDDEN)) | (hidden ? uint32_t(FW_FIELD_HIDDEN) : 0u);
+    setFlag(fields_.get(id)->data.flags, FW_FIELD_HIDDEN, hidden);
 }
 
 void FieldSystem::paint(FwParticleFieldId id, const uint8_t* paint, const uint8_t* walls) {
-    components::ParticleField& field = state_.fields.get(id)->data;
+    components::ParticleField& field = fields_.get(id)->data;
     components::ParticleField before(context_.memory);
     before.paint = field.paint, before.walls = field.walls, before.masks = field.masks;
     components::paintField(field, paint, walls);
     try {
         context_.backend.setFieldMasks(id.index1 - 1, field.masks);
-        if (auto& cells = state_.fields.get(id)->cells) field::maskField(*cells, field.masks);
+        if (auto& cells = fields_.get(id)->cells) field::maskField(*cells, field.masks);
     } catch (...) {
         field.paint.swap(before.paint);
         field.walls.swap(before.walls);
@@ -105,7 +103,7 @@ void FieldSystem::paint(FwParticleFieldId id, const uint8_t* paint, const uint8_
 }
 
 void FieldSystem::fillState(FwParticleFieldId id, FwParticleFieldState& state) {
-    const Field& field = *state_.fields.get(id);
+    const Field& field = *fields_.get(id);
     const auto whole = [](uint32_t low, uint32_t high) { return uint64_t(high) << 32 | low; };
     const gpu::FieldCounters& now = field.counters;
     state.userData = field.data.userData;
@@ -123,19 +121,22 @@ field::FieldRules FieldSystem::rulesOf(const components::ParticleField& field) c
 }
 
 void FieldSystem::sendRules() noexcept {
-    for (auto [i, field] : state_.fields.entries())
+    sentUnder_ = wind_.state().updates;
+    for (auto [i, field] : fields_.entries())
         context_.backend.setFieldRules(i, rulesOf(field.data));
 }
 
-void FieldSystem::plan(const ClockAdvance& time, gpu::FramePlan& plan) noexcept {
-    const uint64_t end = time.after.tick;
+void FieldSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
+    const uint64_t end = frame.end();
+    if (sentUnder_ != wind_.state().updates) sendRules();
     runs_.clear();
     rounds_.clear();
     for (uint32_t round = 0; round < kMaxSteps; ++round) {
-        for (uint32_t i = 0; state_.fields.live() > 0 && i < state_.fields.slotCount(); ++i) {
-            const auto* field = state_.fields.at(i);
+        for (uint32_t i = 0; fields_.live() > 0 && i < fields_.slotCount(); ++i) {
+            const auto* field = fields_.at(i);
             if (!field) continue;
             const uint32_t step = (*field)->steps + round;
+            FW_ASSERT(runs_.size() < runs_.capacity(), "%zu runs", runs_.size());
             if (step < components::fieldSteps((*field)->data, end - (*field)->began))
                 runs_.push_back({i, step - (*field)->shownBase});
         }
@@ -145,8 +146,8 @@ void FieldSystem::plan(const ClockAdvance& time, gpu::FramePlan& plan) noexcept 
     }
     update_.runs = runs_;
     update_.rounds = rounds_;
-    planDraws(time.after);
-    if (state_.fields.live() > 0 || shown_ > 0) plan.fields = &update_;
+    planDraws(frame.time.after);
+    if (fields_.live() > 0 || shown_ > 0) plan.fields = &update_;
 }
 
 void FieldSystem::planDraws(const Clock& now) noexcept {
@@ -154,7 +155,7 @@ void FieldSystem::planDraws(const Clock& now) noexcept {
     drawn_.clear();
     const double ticks = double(now.tick) +
                          double(now.fraction) / double(Clock::kStepUnits) * double(gpu::kStepTicks);
-    for (auto [i, field] : state_.fields.entries()) {
+    for (auto [i, field] : fields_.entries()) {
         if ((field.data.flags & FW_FIELD_HIDDEN)) continue;
         draws_.push_back(components::fieldDraw(
             field.data, ticks - double(field.began),
@@ -165,18 +166,21 @@ void FieldSystem::planDraws(const Clock& now) noexcept {
     update_.drawn = drawn_;
 }
 
-void FieldSystem::commit(uint64_t end) noexcept {
+void FieldSystem::commit(const HostFrame& frame) noexcept {
+    const uint64_t end = frame.end();
+    FW_ASSERT(draws_.size() <= gpu::kMaxFields && draws_.size() == drawn_.size(), "%zu fields",
+              draws_.size());
     shown_ = uint32_t(draws_.size());
-    for (auto [i, field] : state_.fields.entries()) {
+    for (auto [i, field] : fields_.entries()) {
         field.steps = components::fieldSteps(field.data, end - field.began);
         stepCells(field, end);  // before the host changes its rules
     }
 }
 
 void FieldSystem::onReadback(const gpu::Readback& readback) noexcept {
-    const size_t count = std::min<size_t>(state_.fields.slotCount(), readback.fields.size());
+    const size_t count = std::min<size_t>(fields_.slotCount(), readback.fields.size());
     for (uint32_t i = 0; i < count; ++i) {
-        auto* field = state_.fields.at(i);
+        auto* field = fields_.at(i);
         if (!field || (*field)->firstFrame > readback.frameIndex) continue;
         (*field)->counters = readback.fields[i];
         (*field)->countersFrame = readback.frameIndex;
@@ -192,7 +196,7 @@ void FieldSystem::stepCells(Field& field, uint64_t tick) noexcept {
 }
 
 void FieldSystem::wetObjects(uint32_t now) {
-    for (auto [i, field] : state_.fields.entries()) wetObjects(field, now);
+    for (auto [i, field] : fields_.entries()) wetObjects(field, now);
 }
 
 void FieldSystem::wetObjects(Field& field, uint32_t now) {
@@ -215,8 +219,7 @@ void FieldSystem::wetObjects(Field& field, uint32_t now) {
         Object& object = scene_.objectAt(slot);
         if (object.texels == 0) continue;
         const components::Pose& pose = object.data.pose;
-        const float least =
-            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+        const float least = shortestAxis(pose);
         float local[3];
         components::toObject(pose, middle, local);
         if (!object.skinMoved && scene_.nearTexel(object, local, reach / least) == mesh::kNone)
@@ -239,13 +242,58 @@ void FieldSystem::wetObjects(Field& field, uint32_t now) {
     }
 }
 
+// ---- saves ------------------------------------------------------------------------------------
+
+void FieldSystem::capture(SlottedList<FieldSnapshot>& to) const {
+    captureSlots(fields_, to, [&](const Field& field, FieldSnapshot& made) {
+        made.width = field.data.def.width;
+        made.height = field.data.def.height;
+        made.began = field.began;
+        std::copy_n(field.data.position, 3, made.position);
+        std::copy_n(field.data.rotation, 4, made.rotation);
+        made.amount = field.data.def.look.amount;
+        if (!field.cells) return;
+        made.cells = core::Owned<field::FieldCells>::make(context_.memory, context_.memory);
+        *made.cells = *field.cells;
+    });
+}
+
+void FieldSystem::checkSnapshot(const SlottedList<FieldSnapshot>& from, uint64_t tick) const {
+    checkSlots(from, fields_, "particle field", "particle fields");
+    for (const Slotted<FieldSnapshot>& one : from) {
+        const Field& mine = **fields_.at(one.slot);
+        const auto fits = [&](const auto& size) {
+            return size.width == one.width && size.height == one.height;
+        };
+        checkSame(bool(mine.cells) == bool(one.cells) && fits(mine.data.def) && one.began <= tick &&
+                      (!one.cells || fits(*one.cells)),
+                  "particle field", one.slot);
+    }
+}
+
+void FieldSystem::restore(SlottedList<FieldSnapshot>& from) noexcept {
+    for (Slotted<FieldSnapshot>& one : from) {
+        Field& field = **fields_.at(one.slot);
+        // The backend counts its own steps, and continues from them.
+        const uint32_t ran = field.steps - field.shownBase;
+        field.began = one.began;
+        std::copy_n(one.position, 3, field.data.position);
+        std::copy_n(one.rotation, 4, field.data.rotation);
+        field.data.def.look.amount = one.amount;
+        field.steps = components::fieldSteps(field.data, context_.clock.tick - field.began);
+        field.shownBase = field.steps - ran;
+        if (one.cells) static_cast<field::FieldCells&>(*field.cells) = std::move(*one.cells);
+    }
+    sendRules();
+}
+
 void FieldSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, field] : state_.fields.entries())
+    for (auto [i, field] : fields_.entries())
         checkMoved(field.data.position, by, "particle field", i);
 }
 
 void FieldSystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto [i, field] : state_.fields.entries()) moveBy(field.data.position, by);
+    for (auto [i, field] : fields_.entries()) moveBy(field.data.position, by);
 }
 
 }  // namespace fw::world

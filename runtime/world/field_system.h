@@ -2,7 +2,9 @@
 // that fields of water wet.
 #pragma once
 #include "components/particle_field.h"
+#include "world/command.h"
 #include "world/scene.h"
+#include "world/slotted.h"
 
 namespace fw::world {
 
@@ -22,9 +24,22 @@ struct Field {
     core::Owned<field::Field> cells;
 };
 
-struct FieldState {
-    explicit FieldState(std::pmr::memory_resource* memory) : fields("Particle field", memory) {}
-    core::HandlePool<FwParticleFieldId, core::Owned<Field>> fields;
+struct FieldSnapshot {
+    uint32_t width = 0, height = 0;
+    uint64_t began = 0;  // tick
+    float position[3] = {}, rotation[4] = {}, amount = 0;
+    core::Owned<field::FieldCells> cells;  // of one that wets
+
+    template <class A>
+    void serialize(A& a) {
+        a(width, height, began, position, rotation, amount);
+        a.optional(cells);
+        a.range("particle field's place", position, -1e6, 1e6);
+        a.range("particle field's amount", amount, 0, 4);
+        double length = 0;
+        for (const float value : rotation) length += double(value) * double(value);
+        a.range("square of the length of a particle field's rotation", length, 0.99, 1.01);
+    }
 };
 
 class FieldSystem {
@@ -42,19 +57,30 @@ class FieldSystem {
 
     // At an exchange, before the steps of a frame are planned.
     void wetObjects(uint32_t now);
-    void plan(const ClockAdvance& time, gpu::FramePlan& plan) noexcept;
-    void commit(uint64_t end) noexcept;
+    void plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept;
+    void commit(const HostFrame& frame) noexcept;
     void onReadback(const gpu::Readback& readback) noexcept;
     void checkShift(const double (&by)[3]) const;  // throws
     void shiftOrigin(const double (&by)[3]) noexcept;
 
-    [[nodiscard]] const FieldState& state() const noexcept { return state_; }
-    void sendRules() noexcept;  // the wind is another
+    void apply(const MoveField& command) {
+        move(fields_.findId(command.slot), command.position,
+             command.turns ? command.rotation : nullptr);
+    }
+    void apply(const SetFieldAmount& command) {
+        setAmount(fields_.findId(command.slot), command.value);
+    }
+    void capture(SlottedList<FieldSnapshot>& to) const;
+    // Throws unless restore takes it. `tick`: of the save.
+    void checkSnapshot(const SlottedList<FieldSnapshot>& from, uint64_t tick) const;
+    void restore(SlottedList<FieldSnapshot>& from) noexcept;
+
+    [[nodiscard]] const auto& fields() const noexcept { return fields_; }
 
  private:
-    friend class PersistenceSystem;
     static constexpr uint32_t kMaxSteps = gpu::kMaxFieldRounds;  // of a frame
     [[nodiscard]] field::FieldRules rulesOf(const components::ParticleField& field) const noexcept;
+    void sendRules() noexcept;
     void planDraws(const Clock& now) noexcept;
     void stepCells(Field& field, uint64_t tick) noexcept;
     void wetObjects(Field& field, uint32_t now);
@@ -63,9 +89,11 @@ class FieldSystem {
     Scene& scene_;
     const WindSystem& wind_;
     BurnSystem& burn_;
-    FieldState state_{context_.memory};
-    uint32_t made_ = 0;   // since ever
-    uint32_t shown_ = 0;  // that the backend draws
+    core::HandlePool<FwParticleFieldId, core::Owned<Field>> fields_{"Particle field",
+                                                                    context_.memory};
+    uint32_t made_ = 0;       // since ever
+    uint32_t shown_ = 0;      // that the backend draws
+    uint64_t sentUnder_ = 0;  // WindState::updates of the rules that the backend has
     // Of a frame; there is room for all of it.
     std::pmr::vector<gpu::FieldRun> runs_{context_.memory};
     std::pmr::vector<uint32_t> rounds_{context_.memory};

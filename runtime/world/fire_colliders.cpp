@@ -141,9 +141,7 @@ void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEnt
 // Pictures of depth stop no jet: flames alone see them.
 FwFireColliderId FlameSystem::addCollider(const FwFireColliderDef& def, float unitsPerMetre) {
     scene_.geometryVersion += def.kind != FW_COLLIDER_DEPTH;
-    if (colliders_.live() >= limits::kFireColliders)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
-                   colliders_.live(), limits::kFireColliders);
+    checkRoom(colliders_, limits::kFireColliders, "fire colliders");
     auto entry = core::Owned<FireColliderEntry>::make(context_.memory, context_.memory);
     setShape(def, unitsPerMetre, *entry);
     return colliders_.create(std::move(entry));
@@ -163,7 +161,9 @@ void FlameSystem::removeCollider(FwFireColliderId id) {
 }
 
 void FlameSystem::listShapes() noexcept {
-    shapes_.clear();  // capacity was reserved with the first fire
+    FW_ASSERT(colliders_.live() + exchange_.occluders().live() <= shapes_.capacity(),
+              "%u colliders", colliders_.live());
+    shapes_.clear();
     for (const bool pictures : {true, false}) {
         for (auto [i, entry] : colliders_.entries()) {
             const volume::Collider& shape = entry.shape;
@@ -174,7 +174,7 @@ void FlameSystem::listShapes() noexcept {
         }
         if (pictures) pictures_ = uint32_t(shapes_.size());
     }
-    for (auto [i, entry] : exchange_.state().occluders.entries()) {
+    for (auto [i, entry] : exchange_.occluders().entries()) {
         volume::Collider box;
         box.kind = volume::ColliderKind::Box;
         for (int k = 0; k < 3; ++k) box.place[k] = float(entry.pose.translation[k]);

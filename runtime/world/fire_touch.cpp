@@ -5,6 +5,7 @@
 #include "shared/exchange.h"
 #include "world/burn_system.h"
 #include "world/flame_system.h"
+#include "world/geometry.h"
 #include "world/wind_system.h"
 
 #include <algorithm>
@@ -54,12 +55,6 @@ uint32_t ballsOf(const VolumetricFire& fire, const float up[3], const float wind
     return kAxisBalls;
 }
 
-bool moved(const float a[3], const float b[3], float far) noexcept {
-    float sum = 0;
-    for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sum > far * far;
-}
-
 }  // namespace
 
 uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace, double flux) noexcept {
@@ -72,14 +67,14 @@ uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace, double
     return uint64_t(std::clamp(seconds, 0.0, 3600.0) * double(gpu::kTicksPerSecond));
 }
 
-void FlameSystem::forgetObject(FwBurnableMeshId id) noexcept {
-    for (auto [i, fire] : state_.fires.entries())
+void FlameSystem::forgetObject(const Object& object) noexcept {
+    for (auto [i, fire] : fires_.entries())
         for (FireTouch& touch : fire.touches)
-            if (touch.object.index1 == id.index1) touch = {};
+            if (touch.object.index1 == object.id.index1) touch = {};
 }
 
 void FlameSystem::igniteObjects(uint32_t now) {
-    for (auto [i, fire] : state_.fires.entries())
+    for (auto [i, fire] : fires_.entries())
         if (fire.data.flags & FW_FIRE_IGNITES) igniteObjects(fire, now);
 }
 
@@ -92,19 +87,15 @@ void FlameSystem::igniteObjects(Fire& fire, uint32_t now) {
             : 0;
     float span = 0;  // from the first ball's middle, around all of them
     for (uint32_t k = 0; k < count; ++k) {
-        float sum = 0;
-        for (int i = 0; i < 3; ++i)
-            sum +=
-                (balls[k].place[i] - balls[0].place[i]) * (balls[k].place[i] - balls[0].place[i]);
-        span = std::max(span, 1.001f * std::sqrt(sum) + balls[k].radius);
+        const float away = std::sqrt(squaredDistance(balls[k].place, balls[0].place));
+        span = std::max(span, 1.001f * away + balls[k].radius);
     }
     for (const uint32_t slot :
          count > 0 ? scene_.objectsNear(balls[0].place, span) : std::span<const uint32_t>()) {
         Object& object = scene_.objectAt(slot);
         if (object.texels == 0) continue;
         const components::Pose& pose = object.data.pose;
-        const float shrink =
-            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+        const float shrink = shortestAxis(pose);
         uint32_t texel = mesh::kNone;
         float radius = 0;
         for (uint32_t k = 0; k < count && texel == mesh::kNone; ++k) {
@@ -116,19 +107,14 @@ void FlameSystem::igniteObjects(Fire& fire, uint32_t now) {
         if (texel == mesh::kNone) continue;
         const uint32_t material = scene_.texelMaterial(object, texel);
         if (!components::burns(object.data, material)) continue;
-        FireTouch* touch = nullptr;
-        for (FireTouch& t : fire.touches)
-            if (t.object.index1 == object.id.index1 && t.object.generation == object.id.generation)
-                touch = &t;
-        for (FireTouch& t : fire.touches)
-            if (!touch && t.object.index1 == 0) touch = &t;
+        FireTouch* touch = touchOf(fire.touches, object.id);
         if (!touch) continue;  // its flame is among more than it can mind
         touch->seen = true;
-        const bool same = touch->object.index1 != 0;
+        const float far = 0.25f * radius * radius;
         float stands[3];
         for (int i = 0; i < 3; ++i) stands[i] = float(pose.translation[i]);
-        if (!same || moved(touch->fireAt, balls[0].place, 0.5f * radius) ||
-            moved(touch->objectAt, stands, 0.5f * radius)) {
+        if (touch->object.index1 == 0 || squaredDistance(touch->fireAt, balls[0].place) > far ||
+            squaredDistance(touch->objectAt, stands) > far) {
             touch->object = object.id;
             touch->since = now;
             touch->lit = false;

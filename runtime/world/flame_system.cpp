@@ -2,7 +2,7 @@
 
 #include "world/burn_system.h"
 #include "world/exchange_system.h"
-#include "world/persistence.h"
+#include "world/recording.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
 
@@ -27,7 +27,7 @@ FlameSystem::FlameSystem(const WorldContext& context, Scene& scene, const WindSy
 
 void FlameSystem::reserve(uint32_t more) {
     size_t flames = more;
-    for (auto [i, fire] : state_.fires.entries()) flames += fire.data.partCount;
+    for (auto [i, fire] : fires_.entries()) flames += fire.data.partCount;
     const size_t room = burning_.reserveFlames(flames);
     if (flames_.size() < room) flames_.resize(room);
     shapes_.reserve(kMaxShapes);
@@ -55,20 +55,18 @@ uint32_t FlameSystem::profileLayer(const FwVolumetricFireDef& def) {
 }
 
 FwVolumetricFireId FlameSystem::create(const FwVolumetricFireDef& def) {
-    if (state_.fires.live() >= gpu::kMaxVolumeFlames)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u volumetric fires are there; the limit is %u.",
-                   state_.fires.live(), gpu::kMaxVolumeFlames);
+    checkRoom(fires_, gpu::kMaxVolumeFlames, "volumetric fires");
     const uint32_t ownSeed = context_.def.seed * 0x9E3779B9u + made_ + 1;
     auto fire = core::Owned<Fire>::make(context_.memory, context_.memory);
     const uint32_t layer = profileLayer(def);
     components::makeVolumetricFire(def, ownSeed, fire->data);
     fire->data.profile = layer;
     predictAhead(fire->data);
-    const FwVolumetricFireId id = state_.fires.create(std::move(fire));
+    const FwVolumetricFireId id = fires_.create(std::move(fire));
     try {
         reserve(0);
     } catch (...) {
-        state_.fires.destroy(id);
+        fires_.destroy(id);
         throw;
     }
     if (def.profile.index1 != 0) ++profileIds_.get(def.profile).users;
@@ -77,14 +75,14 @@ FwVolumetricFireId FlameSystem::create(const FwVolumetricFireDef& def) {
 }
 
 void FlameSystem::destroy(FwVolumetricFireId id) {
-    const VolumetricFire& fire = state_.fires.get(id)->data;
+    const VolumetricFire& fire = fires_.get(id)->data;
     if (fire.ownProfile.index1 != 0) --profileIds_.get(fire.ownProfile).users;
     burning_.drop(fire);
-    state_.fires.destroy(id);
+    fires_.destroy(id);
 }
 
 void FlameSystem::move(FwVolumetricFireId id, const float position[3]) {
-    VolumetricFire& fire = state_.fires.get(id)->data;
+    VolumetricFire& fire = fires_.get(id)->data;
     const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
     if (burns) context_.recorder.mayChange();
     components::setFirePosition(fire, position);
@@ -94,49 +92,46 @@ void FlameSystem::move(FwVolumetricFireId id, const float position[3]) {
 }
 
 void FlameSystem::setPower(FwVolumetricFireId id, float power) {
-    VolumetricFire& fire = state_.fires.get(id)->data;
+    VolumetricFire& fire = fires_.get(id)->data;
     const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
     if (burns) context_.recorder.mayChange();
     reserve(components::maxParts(power, fire.diameter));
     components::setFirePower(fire, power);
     predictAhead(fire);
-    if (burns) context_.recorder.record(SetFirePower{id.index1 - 1, power});
+    if (burns) context_.recorder.record(SetFirePower{{id.index1 - 1, power}});
 }
 
 void FlameSystem::setPoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count) {
-    VolumetricFire& fire = state_.fires.get(id)->data;
+    VolumetricFire& fire = fires_.get(id)->data;
     reserve(components::maxParts(fire.power, fire.diameter));
     components::setFirePoints(fire, points, count, "points");
     predictAhead(fire);
 }
 
 void FlameSystem::setTrack(FwVolumetricFireId id, const FwFireTrackDef* def) {
-    VolumetricFire& fire = state_.fires.get(id)->data;
+    VolumetricFire& fire = fires_.get(id)->data;
     reserve(components::maxParts(fire.power, fire.diameter));
     components::setFireTrack(fire, def);
     predictAhead(fire);
 }
 
 void FlameSystem::setHidden(FwVolumetricFireId id, bool hidden) {
-    uint32_t& flags = state_.fires.get(id)->data.flags;
-    flags = (flags & ~uint32_t(FW_FIRE_HIDDEN)) | (hidden ? uint32_t(FW_FIRE_HIDDEN) : 0u);
+    setFlag(fires_.get(id)->data.flags, FW_FIRE_HIDDEN, hidden);
 }
 
 void FlameSystem::setTier(FwVolumetricFireId id, uint32_t tier) {
-    VolumetricFire& fire = state_.fires.get(id)->data;
+    VolumetricFire& fire = fires_.get(id)->data;
     components::setFireTier(fire, tier, "tier");
 }
 
 void FlameSystem::fillState(FwVolumetricFireId id, FwVolumetricFireState& state) {
-    components::fillFireState(state_.fires.get(id)->data, state);
+    components::fillFireState(fires_.get(id)->data, state);
 }
 
 // ---- profiles ---------------------------------------------------------------------------------
 
 FwFireProfileId FlameSystem::createProfile(const FwFireProfileDef& def) {
-    if (profileIds_.live() >= gpu::kMaxFireProfiles)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire profiles are there; the limit is %u.",
-                   profileIds_.live(), gpu::kMaxFireProfiles);
+    checkRoom(profileIds_, gpu::kMaxFireProfiles, "fire profiles");
     auto profile = core::Owned<volume::Profile>::make(context_.memory);
     components::readFireProfile(def, context_.memory, *profile);
     const FwFireProfileId id = profileIds_.create();
@@ -173,9 +168,8 @@ void FlameSystem::ask(const float point[3], FwFireSample& answer) {
     answer.temperature = found.air.kelvin;
     answer.heatFlux = found.air.heatFlux;
     for (int i = 0; i < 3; ++i) answer.gas[i] = found.air.gas[i];
-    for (uint32_t i = 0; found.fire && i < state_.fires.slotCount(); ++i)
-        if (const auto* fire = state_.fires.at(i); fire && &(*fire)->data == found.fire)
-            answer.fire = state_.fires.idOf(i);
+    for (auto [i, fire] : fires_.entries())
+        if (&fire.data == found.fire) answer.fire = fires_.idOf(i);
 }
 
 void FlameSystem::push(const float centre[3], float radius, FwFireForce& push) {
@@ -190,39 +184,81 @@ void FlameSystem::push(const float centre[3], float radius, FwFireForce& push) {
 
 // ---- frames -----------------------------------------------------------------------------------
 
-void FlameSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
+void FlameSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
     uint32_t count = 0;
-    if (state_.fires.live() > 0) {
+    if (fires_.live() > 0) {
         listShapes();
         components::FireAir air;
         std::copy_n(context_.def.up, 3, air.up);
         air.colliders = shapes_;
         burning_.begin();
-        for (auto [i, fire] : state_.fires.entries()) {
+        for (auto [i, fire] : fires_.entries()) {
             const std::array<float, 3> wind = wind_.at(fire.data.position, context_.clock.tick);
             std::copy_n(wind.data(), 3, fire.data.wind);
             burning_.settle(fire.data, air);
         }
-        burning_.advance(air, seconds);
+        burning_.advance(air, frame.seconds);
         count = burning_.write(flames_);
         for (uint32_t i = 0; i < count; ++i) {
             uint32_t& octaves = flames_[i].record.octaves;
             octaves = std::min(octaves, context_.def.volumeOctaves);
         }
     }
+    FW_ASSERT(count <= flames_.size(), "%u of %zu flames", count, flames_.size());
     update_ = {flames_.data(), count};
-    if (state_.fires.live() > 0 || shown_ > 0) plan.volumes = &update_;
+    if (fires_.live() > 0 || shown_ > 0) plan.volumes = &update_;
 }
 
 void FlameSystem::commit() noexcept {
     shown_ = update_.count;
-    if (state_.fires.live() == 0) return;
+    if (fires_.live() == 0) return;
     burning_.commit();
-    for (auto [i, fire] : state_.fires.entries()) fire.data.state = fire.data.nextState;
+    for (auto [i, fire] : fires_.entries()) fire.data.state = fire.data.nextState;
+}
+
+// ---- saves ------------------------------------------------------------------------------------
+
+void FlameSystem::capture(SlottedList<FireSnapshot>& to) const {
+    captureSlots(fires_, to, [](const Fire& fire, FireSnapshot& made) {
+        static_cast<components::FireControls&>(made) = fire.data;
+        made.flags = fire.data.flags & FW_FIRE_IGNITES;
+        made.touches = fire.touches;
+    });
+}
+
+void FlameSystem::checkSnapshot(const SlottedList<FireSnapshot>& from) {
+    checkSlots(from, fires_, "volumetric fire", "volumetric fires");
+    uint32_t flames = 0;
+    for (const Slotted<FireSnapshot>& one : from) {
+        const VolumetricFire& fire = (*fires_.at(one.slot))->data;
+        checkSame((fire.flags & FW_FIRE_IGNITES) == one.flags, "volumetric fire", one.slot);
+        flames += components::maxParts(one.power, fire.diameter);
+    }
+    reserve(flames);
+}
+
+void FlameSystem::restore(const SlottedList<FireSnapshot>& from) noexcept {
+    for (const Slotted<FireSnapshot>& one : from) {
+        Fire& fire = **fires_.at(one.slot);
+        if (!(one == fire.data)) {  // as if it had always burnt so
+            burning_.drop(fire.data);
+            fire.data.state = {};
+            fire.data.points = one.points;
+            fire.data.pointCount = one.pointCount;
+            components::setFirePosition(fire.data, one.position);
+            components::setFirePower(fire.data, one.power);
+            predictAhead(fire.data);
+        }
+        for (size_t k = 0; k < one.touches.size(); ++k) {
+            const bool seen = fire.touches[k].seen;
+            fire.touches[k] = one.touches[k];
+            fire.touches[k].seen = seen;
+        }
+    }
 }
 
 void FlameSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, fire] : state_.fires.entries()) {
+    for (auto [i, fire] : fires_.entries()) {
         checkMoved(fire.data.position, by, "volumetric fire", i);
         for (uint32_t k = 0; k < fire.data.pointCount; ++k)
             checkMoved(fire.data.points[k].position, by, "a point of volumetric fire", i);
@@ -235,7 +271,7 @@ void FlameSystem::checkShift(const double (&by)[3]) const {
 }
 
 void FlameSystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto [i, owned] : state_.fires.entries()) {
+    for (auto [i, owned] : fires_.entries()) {
         VolumetricFire& fire = owned.data;
         moveBy(fire.position, by);
         for (volume::ControlPoint& point : fire.points) moveBy(point.position, by);

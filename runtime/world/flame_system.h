@@ -5,7 +5,9 @@
 #include "components/fire_flames.h"
 #include "flipbook/flipbook.h"
 #include "volume/depth_picture.h"
+#include "world/command.h"
 #include "world/scene.h"
+#include "world/slotted.h"
 
 namespace fw::world {
 
@@ -26,6 +28,17 @@ struct FireTouch {
     void serialize(A& a) {
         a.object("a flame", object);
         if (object.index1 != 0) a(since, fireAt, objectAt, lit);
+    }
+};
+
+struct FireSnapshot : components::FireControls {
+    uint32_t flags = 0;  // FW_FIRE_IGNITES
+    std::array<FireTouch, 8> touches{};
+
+    template <class A>
+    void serialize(A& a) {
+        components::FireControls::serialize(a);
+        a(flags, touches);
     }
 };
 
@@ -56,11 +69,6 @@ struct FireColliderEntry {
     volume::DepthPicture picture;
 };
 
-struct FlameState {
-    explicit FlameState(std::pmr::memory_resource* memory) : fires("Volumetric fire", memory) {}
-    core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires;
-};
-
 class FlameSystem {
  public:
     FlameSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
@@ -88,13 +96,22 @@ class FlameSystem {
 
     // At an exchange, before the steps of a frame are planned.
     void igniteObjects(uint32_t now);
-    void plan(float seconds, gpu::FramePlan& plan) noexcept;
+    void plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept;
     void commit() noexcept;
-    void forgetObject(FwBurnableMeshId id) noexcept;  // that goes
-    void checkShift(const double (&by)[3]) const;     // throws
+    void forgetObject(const Object& object) noexcept;  // that goes
+    void checkShift(const double (&by)[3]) const;      // throws
     void shiftOrigin(const double (&by)[3]) noexcept;
 
-    [[nodiscard]] const FlameState& state() const noexcept { return state_; }
+    void apply(const MoveFire& command) { move(fires_.findId(command.slot), command.position); }
+    void apply(const SetFirePower& command) {
+        setPower(fires_.findId(command.slot), command.value);
+    }
+    void capture(SlottedList<FireSnapshot>& to) const;
+    // Throws unless restore takes it; then it needs no memory.
+    void checkSnapshot(const SlottedList<FireSnapshot>& from);
+    void restore(const SlottedList<FireSnapshot>& from) noexcept;
+
+    [[nodiscard]] const auto& fires() const noexcept { return fires_; }
     // Reserves room for a frame with `more` flames; throws std::bad_alloc.
     void reserve(uint32_t more);
     void listShapes() noexcept;
@@ -109,16 +126,13 @@ class FlameSystem {
     // The highest of the host's height fields at a place; false: none is there.
     template <class Visit>
     void eachHeightField(Visit visit) const {
-        for (uint32_t slot = 0; slot < colliders_.slotCount(); ++slot)
-            if (const auto* entry = colliders_.at(slot);
-                entry && (*entry)->shape.kind == volume::ColliderKind::HeightField)
-                visit((*entry)->shape);
+        for (auto [slot, entry] : colliders_.entries())
+            if (entry.shape.kind == volume::ColliderKind::HeightField) visit(entry.shape);
     }
     components::EmitterFlipbooks flipbooksOf(const FwFireEmitterDef& def);
     void countFlipbookUsers(const FwFireEmitterDef& def, int by) noexcept;
 
  private:
-    friend class PersistenceSystem;
     static constexpr uint32_t kMaxShapes = 64 + gpu::kMaxHeatOccluders;  // colliders and occluders
     void predictAhead(components::VolumetricFire& fire) noexcept;
     uint32_t profileLayer(const FwVolumetricFireDef& def);
@@ -131,7 +145,8 @@ class FlameSystem {
     const WindSystem& wind_;
     const ExchangeSystem& exchange_;
     BurnSystem& burn_;
-    FlameState state_{context_.memory};
+    core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires_{"Volumetric fire",
+                                                                   context_.memory};
     core::HandlePool<FwFireProfileId, FireProfileEntry> profileIds_{"Fire profile",
                                                                     context_.memory};
     core::HandlePool<FwFlipbookId, FlipbookEntry> flipbooks_{"Flipbook", context_.memory};

@@ -12,7 +12,7 @@ void FlameSystem::sendFlipbooks(uint32_t slot, const flipbook::Flipbook* fresh) 
     const flipbook::Flipbook* all[gpu::kMaxFlipbooks] = {};
     uint32_t count = 0;
     for (uint32_t i = 0; i < gpu::kMaxFlipbooks; ++i) {
-        const FlipbookEntry* entry = i < flipbooks_.slotCount() ? flipbooks_.at(i) : nullptr;
+        const FlipbookEntry* entry = flipbooks_.findSlot(i);
         all[i] = i == slot ? fresh : entry ? entry->book.get() : nullptr;
         count += all[i] != nullptr;
     }
@@ -26,9 +26,7 @@ void FlameSystem::sendFlipbooks(uint32_t slot, const flipbook::Flipbook* fresh) 
 }
 
 FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
-    if (flipbooks_.live() >= gpu::kMaxFlipbooks)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u flipbooks are there; the limit is %u.",
-                   flipbooks_.live(), gpu::kMaxFlipbooks);
+    checkRoom(flipbooks_, gpu::kMaxFlipbooks, "flipbooks");
     components::checkWhole(def.flags, "FwFlipbookDef::flags", 0, 0);
     components::checkWhole(def.preset, "FwFlipbookDef::preset", 0, FW_FLIPBOOK_PRESET_COUNT - 1);
     components::checkWhole(def.reserved, "FwFlipbookDef::reserved", 0, 0);

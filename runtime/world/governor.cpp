@@ -21,6 +21,7 @@ float unpackBendShare(const FrameCost& limit, const FrameCost& cost) noexcept {
 }
 
 float savesAt(const Governor& g, uint32_t level) noexcept {
+    FW_ASSERT(level < kDetailLevels, "level %u", level);
     return g.saves[level] > 0 ? g.saves[level] : g.guess;
 }
 

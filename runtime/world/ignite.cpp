@@ -3,9 +3,8 @@
 #include "core/growth.h"
 #include "mesh/bake.h"
 #include "world/burn_system.h"
-#include "world/checks.h"
-#include "world/emitter_system.h"
-#include "world/persistence.h"
+#include "world/geometry.h"
+#include "world/recording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,17 +107,15 @@ void BurnSystem::explainMiss(const FwIgnitionDef& def, uint32_t texels,
         float point[3];
         components::toObject(object.data.pose, at, point);
         const components::Pose& pose = object.data.pose;
-        const float shortest =
-            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
         if (!object.skinMoved &&
-            nearest.beats(distanceToBox(point, scene_.domainOf(object)) * shortest))
+            nearest.beats(distanceToBox(point, scene_.domainOf(object)) * shortestAxis(pose)))
             return;
         const uint32_t texel = scene_.nearestTexel(object, point, 1e18f);
         if (texel == mesh::kNone) return;
-        float place[3], squared = 0;
+        float place[3];
         scene_.texelPosition(object, texel, place);
-        for (int i = 0; i < 3; ++i) squared += (place[i] - at[i]) * (place[i] - at[i]);
-        if (!nearest.beats(std::sqrt(squared))) nearest = {&object, std::sqrt(squared)};
+        const float metres = std::sqrt(squaredDistance(place, at));
+        if (!nearest.beats(metres)) nearest = {&object, metres};
     };
     if (def.object.index1 != 0) meet(**scene_.objects.find(def.object));
     // Searches that grow until one reaches as far as the nearest: a miss costs no look at all
@@ -157,6 +154,7 @@ void BurnSystem::reservePending(size_t more) {
 
 void BurnSystem::addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                             std::span<const uint32_t> texels) {
+    FW_ASSERT(kind <= FW_EXTINGUISH && water <= gpu::kMaxFilm, "kind %u, %u g/m^2", kind, water);
     reservePending(texels.size());
     object.firstEvent = std::min(object.firstEvent, tick);
     if (kind == FW_WET)
@@ -177,16 +175,20 @@ uint32_t BurnSystem::igniteObject(Object& object, const FwIgnitionDef& def, uint
         radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
     const uint32_t water =
         def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kMaxFilm;
-    const auto wet = [&] {
-        if (def.kind == FW_WET || def.kind == FW_EXTINGUISH)
-            emitters_.wetPatches(object, def,
-                                 def.kind == FW_WET ? water : components::kPatchDrowned, tick);
+    const auto addTexels = [&](std::span<const uint32_t> texels) {
+        addPending(object, def.kind, tick, water, texels);
+        if (def.kind != FW_WET && def.kind != FW_EXTINGUISH) return;
+        const float* at = def.position;
+        splashes_.push_back({object.slot,
+                             {at[0], at[1], at[2]},
+                             def.radius,
+                             def.kind == FW_WET ? water : components::kPatchDrowned,
+                             tick});
     };
     // One event, however many texels it has.
     if (!object.skinMoved && ballHolds(point, radius * stretched, pose, domain)) {
         const uint32_t all[] = {kAllTexels};
-        addPending(object, def.kind, tick, water, all);
-        wet();
+        addTexels(all);
         return domain.report.realTexels;
     }
     const float reach = std::max(radius, domain.texelSide);
@@ -207,14 +209,14 @@ uint32_t BurnSystem::igniteObject(Object& object, const FwIgnitionDef& def, uint
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reached * reached;
     });
     if (scene_.found.empty()) scene_.found.push_back(nearest);
-    addPending(object, def.kind, tick, water, scene_.found);
-    wet();
+    addTexels(scene_.found);
     return uint32_t(scene_.found.size());
 }
 
 uint32_t BurnSystem::ignite(const FwIgnitionDef& def, bool* acts) {
     context_.recorder.mayChange();
     checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
+    splashes_.clear();
     const size_t before = state_.pending.size();
     const uint32_t texels = igniteAt(def, eventTick(def.delay));
     if (acts) *acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
@@ -222,7 +224,7 @@ uint32_t BurnSystem::ignite(const FwIgnitionDef& def, bool* acts) {
 }
 
 uint32_t BurnSystem::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
-    checkLimit(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
+    components::checkWhole(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
     checkLengths(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
     checkLength(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
     checkValue(def.water, "FwIgnitionDef::water", 0.0f, def.kind == FW_WET ? 1023.0f : 0.0f);
@@ -248,7 +250,7 @@ uint32_t BurnSystem::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
 
 void BurnSystem::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels) {
     Object& object = *scene_.objects.get(id);
-    checkLimit(kind, "kind", 0, FW_EXTINGUISH);
+    components::checkWhole(kind, "kind", 0, FW_EXTINGUISH);
     const mesh::BurnDomain& domain = scene_.domainOf(object);
     const uint32_t count = domain.texelCount();
     for (size_t i = 0; i < texels.size(); ++i)
@@ -262,9 +264,76 @@ void BurnSystem::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const 
     addPending(object, kind, uint32_t(context_.clock.tick), gpu::kMaxFilm, scene_.found);
 }
 
+void BurnSystem::checkCommandTick(uint32_t tick) const {
+    if (tick < context_.clock.tick || tick > Clock::kLastTick)
+        core::fail(FW_ERROR_BAD_DATA, "A command takes effect at tick %u; it is now %llu.", tick,
+                   static_cast<unsigned long long>(context_.clock.tick));
+}
+
+// The texel events from `first` on, as commands.
+void BurnSystem::recordTexels(size_t first) noexcept {
+    if (!context_.recorder.records()) return;
+    for (size_t i = first; i < state_.pending.size();) {
+        const PendingTexel& event = state_.pending[i];
+        const TexelChange change{event.kind, event.tick, event.water};
+        if (event.texel == kAllTexels) {
+            IgniteObjects command{change, {}};
+            while (i < state_.pending.size() && state_.pending[i].texel == kAllTexels &&
+                   command.slots.add(state_.pending[i].object))
+                ++i;
+            context_.recorder.record(command);
+            continue;
+        }
+        IgniteTexels command{event.object, change, {}};
+        while (i < state_.pending.size() && state_.pending[i].object == command.slot &&
+               state_.pending[i].texel != kAllTexels && command.texels.add(state_.pending[i].texel))
+            ++i;
+        context_.recorder.record(command);
+    }
+}
+
+void BurnSystem::apply(const IgniteTexels& command) {
+    Object& object = *scene_.objects.get(scene_.objects.findId(command.slot));
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
+    scene_.found.clear();
+    command.texels.each([&](uint32_t texel) {
+        if (texel >= domain.texelCount() || !domain.real(texel))
+            core::fail(FW_ERROR_BAD_DATA, "A command changes texel %u of burnable mesh %u.", texel,
+                       command.slot + 1);
+        scene_.found.push_back(texel);
+    });
+    addChange(object, command.change, scene_.found);
+    context_.recorder.record(command);
+}
+
+void BurnSystem::apply(const IgniteObjects& command) {
+    constexpr uint32_t all[] = {kAllTexels};
+    size_t count = 0;
+    command.slots.each([&](uint32_t slot) {
+        (void)scene_.objects.get(scene_.objects.findId(slot));
+        ++count;
+    });
+    reservePending(count);
+    command.slots.each(
+        [&](uint32_t slot) { addChange(scene_.objectAt(slot), command.change, all); });
+    context_.recorder.record(command);
+}
+
+void BurnSystem::addChange(Object& object, const TexelChange& change,
+                           std::span<const uint32_t> texels) {
+    checkCommandTick(change.tick);
+    if (change.kind > FW_EXTINGUISH || change.water > gpu::kMaxFilm)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "A command is of kind %u with %u g/m^2 of water; the limits are %u and %u.",
+                   change.kind, change.water, uint32_t(FW_EXTINGUISH), gpu::kMaxFilm);
+    if (!texels.empty()) addPending(object, change.kind, change.tick, change.water, texels);
+}
+
 void BurnSystem::addPending(PendingTexel event) noexcept {
+    FW_ASSERT(state_.pending.size() < state_.pending.capacity(), "%zu events",
+              state_.pending.size());
     event.order = state_.order++;
-    state_.pending.push_back(event);  // capacity was reserved
+    state_.pending.push_back(event);
 }
 
 }  // namespace fw::world

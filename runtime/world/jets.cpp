@@ -8,8 +8,8 @@
 #include "world/emitter_system.h"
 #include "world/exchange_system.h"
 #include "world/flame_system.h"
-#include "world/persistence.h"
-#include "world/query_system.h"
+#include "world/geometry.h"
+#include "world/recording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,10 +53,6 @@ constexpr float kNearPatch = 0.45f;  // m within which fuel sticks to fuel
 constexpr float kPastReach = 1.15f;  // a few particles come farther than most
 
 uint32_t millimetres(float m) noexcept { return uint32_t(std::lround(std::max(m, 0.0f) * 1000)); }
-
-float minScale(const components::Pose& pose) noexcept {
-    return pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
-}
 
 // Through shapes: m to the first, or `most`.
 float sweepShapes(std::span<const volume::Collider> shapes, vec3 from, vec3 way, float most,
@@ -109,13 +105,6 @@ void jetRays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
     }
 }
 
-// m, object space.
-void restPosition(const mesh::BurnDomain& domain, uint32_t texel, float (&out)[3]) noexcept {
-    const mesh::TexelPosition& p = domain.texels[texel];
-    const uint16_t units[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) out[i] = domain.origin[i] + domain.quantum * float(units[i]);
-}
-
 bool alike(const mesh::BurnDomain& domain, uint32_t a, uint32_t b) noexcept {  // face one way
     const gpu::ivec3 n = gpu::decodeNormal(domain.normals[a]);
     const gpu::ivec3 m = gpu::decodeNormal(domain.normals[b]);
@@ -126,8 +115,8 @@ bool alike(const mesh::BurnDomain& domain, uint32_t a, uint32_t b) noexcept {  /
 bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, uint32_t gate,
                 uint32_t texel, float far) noexcept {
     float a[3], b[3], sum = 0;
-    restPosition(domain, gate, a);
-    restPosition(domain, texel, b);
+    restPlace(domain, gate, a);
+    restPlace(domain, texel, b);
     for (int i = 0; i < 3; ++i) {
         const float d = (a[i] - b[i]) * pose.stretch[i] * pose.scale;
         sum += d * d;
@@ -140,30 +129,26 @@ float footprintRadius(float least, float watts) noexcept {
     return std::max(least, std::sqrt(watts / (3.14159265f * float(gpu::kMaxFlux))));
 }
 
-float maxScale(const components::Pose& pose) noexcept {
-    return pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
-}
-
 }  // namespace
 
 // The objects that rays from there may meet, for the sweeps that follow.
 void EmitterSystem::listJetTargets(const float from[3], float reach) noexcept {
-    jetSlots_.clear();  // capacity was reserved with each object
+    FW_ASSERT(scene_.objects.live() <= jetSlots_.capacity(), "%u objects", scene_.objects.live());
+    jetSlots_.clear();
     for (const uint32_t slot : scene_.objectsNear(from, reach + kFarStep)) {
         const Object& object = scene_.objectAt(slot);
         const components::Pose& pose = object.data.pose;
         const mesh::BurnDomain& domain = scene_.domainOf(object);
-        float middle[3], at[3], away = 0, wide = 0;
+        float middle[3], at[3], wide = 0;
+        middleOf(domain, middle);
         for (int i = 0; i < 3; ++i) {
-            middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
             const float half = (domain.boundsHigh[i] - middle[i]) * pose.stretch[i] * pose.scale;
             wide += half * half;
         }
         components::toWorld(pose, middle, at);
-        for (int i = 0; i < 3; ++i) away += (at[i] - from[i]) * (at[i] - from[i]);
         const float far =
-            reach + std::sqrt(wide) + kFarStep + 4 * domain.texelSide * maxScale(pose);
-        if (object.skinMoved || away < far * far) jetSlots_.push_back(slot);
+            reach + std::sqrt(wide) + kFarStep + 4 * domain.texelSide * longestAxis(pose);
+        if (object.skinMoved || squaredDistance(at, from) < far * far) jetSlots_.push_back(slot);
     }
 }
 
@@ -175,7 +160,7 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
     vec3 normal(-along);
     float nearest = sweepShapes(flames_.walls(), from, along, most, normal);
     if (const float cell =
-            components::sweepOcclusion(exchange_.state().shield.grid, start, way, nearest);
+            components::sweepOcclusion(exchange_.occlusionGrid(), start, way, nearest);
         cell < nearest) {
         nearest = cell;
         normal = -along;
@@ -186,13 +171,12 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
         const Object& object = scene_.objectAt(slot);
         const components::Pose& pose = object.data.pose;
         const mesh::BurnDomain& domain = scene_.domainOf(object);
-        const float least = minScale(pose);
-        const float most_ = maxScale(pose);
+        const float least = shortestAxis(pose);
         // Closer than half a link between texels and it is struck; a stretched mesh's are longer
         // one way than the other.
         const float gap =
             std::clamp(0.55f * domain.linkMax, 0.75f * domain.texelSide, 4.0f * domain.texelSide);
-        const float close = std::max(gap * most_, kMinStep);
+        const float close = std::max(gap * longestAxis(pose), kMinStep);
         float enter = 0, leave = nearest;
         if (!object.skinMoved) {
             float a[3], b[3], end[3], local[3];
@@ -214,9 +198,7 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
                 continue;
             }
             scene_.texelPosition(object, found, texel);
-            float sum = 0;
-            for (int k = 0; k < 3; ++k) sum += (texel[k] - point[k]) * (texel[k] - point[k]);
-            const float distance = std::sqrt(sum);
+            const float distance = std::sqrt(squaredDistance(texel, point));
             if (distance < close) {
                 if (at >= nearest) break;
                 if (passed && passed->object == object.slot &&
@@ -281,8 +263,8 @@ void EmitterSystem::updateJetObstacles(FireEmitter& emitter, double now) noexcep
     for (uint32_t i = 0; i < kRays; ++i) {
         JetHit hit = emitter.hits[i];
         if (const components::JetHole& hole = emitter.holes[i];
-            hit.met && hole.object.index1 != 0 && hole.object.index1 == hit.object.index1 &&
-            hole.object.generation == hit.object.generation && hole.texel == hit.texel)
+            hit.met && hole.object.index1 != 0 && same(hole.object, hit.object) &&
+            hole.texel == hit.texel)
             passHole(emitter, hit);
         components::JetObstacle shield;
         shield.met = hit.met;
@@ -295,21 +277,21 @@ void EmitterSystem::updateJetObstacles(FireEmitter& emitter, double now) noexcep
     }
 }
 
-void EmitterSystem::forgetObject(FwBurnableMeshId id, uint32_t slot) noexcept {
+void EmitterSystem::forgetObject(const Object& object) noexcept {
     const auto forget = [&](auto& entries) {
         for (auto& entry : entries)
-            if (entry.object.index1 == id.index1) entry = {};
+            if (entry.object.index1 == object.id.index1) entry = {};
     };
-    for (auto [i, emitter] : state_.emitters.entries()) {
+    for (auto [i, emitter] : emitters_.entries()) {
         forget(emitter.touches);
         if (!emitter.stream) continue;
         forget(emitter.stream->patches);
         forget(emitter.stream->before);
         for (JetParcel& parcel : emitter.stream->parcels)
             for (JetRay& ray : parcel.rays) {
-                if (ray.hit.object.index1 == id.index1) ray.hit = {};
+                if (ray.hit.object.index1 == object.id.index1) ray.hit = {};
                 for (uint32_t g = 0; g < ray.gateCount; ++g)
-                    if (ray.gates[g].object == slot) ray.gateCount = 0;
+                    if (ray.gates[g].object == object.slot) ray.gateCount = 0;
             }
     }
 }
@@ -329,16 +311,17 @@ void EmitterSystem::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
     hit.distance = passed + sweepJet(start, way, left, hit, &gate);
 }
 
-// Asks what stands where jets strike: 2 to 3 frames later their particles may pass.
-void EmitterSystem::probeJets() {
-    for (auto [slot, emitter] : state_.emitters.entries()) {
+void EmitterSystem::listProbes() noexcept {
+    probes_.clear();
+    for (auto [slot, emitter] : emitters_.entries()) {
         if (!components::isSwept(emitter.def) || !(emitter.def.power > 0)) continue;
         for (uint32_t i = 0; i < kRays; ++i) {
             const JetHit& hit = emitter.hits[i];
             if (!hit.met || !scene_.objects.find(hit.object)) continue;
             const uint32_t holeTicks = gateTicks(hit, uint32_t(context_.clock.tick) + 1);
             if (holeTicks == 0) continue;
-            queries_.addJetProbe(hit, slot, i, holeTicks);
+            FW_ASSERT(probes_.size() < probes_.capacity(), "%zu probes", probes_.size());
+            probes_.push_back({emitters_.idOf(slot), hit.object, hit.texel, i, holeTicks});
         }
     }
 }
@@ -346,13 +329,13 @@ void EmitterSystem::probeJets() {
 // At an exchange, before the steps of a frame are planned: what left the nozzle at earlier ones
 // flies on, and another parcel leaves. A frame that failed may come again: then so does all of it.
 void EmitterSystem::beginExchanges(uint32_t first) noexcept {
-    if (state_.emitters.live() > 0) flames_.listShapes();
-    for (auto [i, emitter] : state_.emitters.entries())
+    if (emitters_.live() > 0) flames_.listShapes();
+    for (auto [i, emitter] : emitters_.entries())
         if (emitter.stream) settlePatches(emitter, first);
 }
 
 void EmitterSystem::heatObjects(uint32_t now) {
-    for (auto [i, emitter] : state_.emitters.entries())
+    for (auto [i, emitter] : emitters_.entries())
         if (emitter.def.flags & FW_EMITTER_IGNITES) heatObjects(emitter, now);
 }
 
@@ -461,6 +444,7 @@ bool EmitterSystem::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay
         ray.spent = now;
         return false;
     }
+    FW_ASSERT(ray.gateCount < components::kJetGates, "%u gates", ray.gateCount);
     ray.passed[ray.gateCount] = now;
     ray.gates[ray.gateCount++] = gate;
     return true;
@@ -472,16 +456,16 @@ void EmitterSystem::findFootprint(const Object& object, const JetHit& hit, float
     const mesh::BurnDomain& domain = scene_.domainOf(object);
     float point[3];
     if (object.skinMoved)  // what was near at rest still is
-        restPosition(domain, hit.texel, point);
+        restPlace(domain, hit.texel, point);
     else
         components::toObject(pose, hit.place, point);
-    const float least = minScale(pose);
+    const float least = shortestAxis(pose);
     scene_.found.clear();
     mesh::texelsNear(domain, point, radius / least, scene_.found);
     std::erase_if(scene_.found, [&](uint32_t texel) {
         if (!alike(domain, texel, hit.texel)) return true;
         float place[3], sum = 0;
-        restPosition(domain, texel, place);
+        restPlace(domain, texel, place);
         for (int i = 0; i < 3; ++i) {
             const float d = (place[i] - point[i]) * pose.stretch[i] * pose.scale;
             sum += d * d;
@@ -513,6 +497,7 @@ void EmitterSystem::heatByJet(FireEmitter& emitter, const JetParcel& parcel, con
     event.gates = ray.gates;
     event.gateCount = ray.gateCount;
     event.shut = gate.holeTicks > 0;
+    FW_ASSERT(event.gateCount < event.gates.size() || !event.shut, "%u gates", event.gateCount);
     if (event.shut) event.gates[event.gateCount++] = gate;
     uint64_t left = 0;
     const bool full =
@@ -552,6 +537,8 @@ bool EmitterSystem::heatFootprint(Object& object, const JetHit& hit, float radiu
     for (const uint32_t texel : scene_.found) jetAreas_.push_back(areaOf(texel));
     jetFlux_.resize(scene_.found.size());
     burn_.reservePending(scene_.found.size());
+    FW_ASSERT(!scene_.found.empty() && jetAreas_.size() == jetFlux_.size(), "%zu texels",
+              jetAreas_.size());
     left = components::updateJetShare(power, jetAreas_, jetFlux_);
     object.firstEvent = std::min(object.firstEvent, tick);
     PendingTexel event = like;
@@ -579,14 +566,10 @@ uint64_t EmitterSystem::attachFuel(FireEmitter& emitter, const JetHit& hit,
             free = free ? free : &patch;
             continue;
         }
-        float apart = 0, along = 0;
-        for (int i = 0; i < 3; ++i) {
-            apart += (patch.place[i] - hit.place[i]) * (patch.place[i] - hit.place[i]);
-            along += patch.normal[i] * hit.normal[i];
-        }
-        if (patch.object.index1 != hit.object.index1 ||
-            patch.object.generation != hit.object.generation || apart > least || along < 0)
-            continue;
+        const float apart = squaredDistance(patch.place, hit.place);
+        float along = 0;
+        for (int i = 0; i < 3; ++i) along += patch.normal[i] * hit.normal[i];
+        if (!same(patch.object, hit.object) || apart > least || along < 0) continue;
         least = apart;
         nearest = &patch;
     }
@@ -653,27 +636,23 @@ void EmitterSystem::burnPatches(FireEmitter& emitter, uint32_t now) {
     }
 }
 
-// Water that falls on an object falls on what sticks to it.
-void EmitterSystem::wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
-                               uint32_t tick) noexcept {
-    for (auto [i, emitter] : state_.emitters.entries()) {
-        if (!emitter.stream) continue;
+void EmitterSystem::wetPatches(std::span<const Splash> splashes, bool records) noexcept {
+    for (const Splash& splash : splashes) {
+        const FwBurnableMeshId object = scene_.objects.idOf(splash.slot);
         const auto isHit = [&](const JetPatch& patch) {
-            float apart = 0;
-            for (int k = 0; k < 3; ++k)
-                apart += (patch.place[k] - def.position[k]) * (patch.place[k] - def.position[k]);
-            const float far = def.radius + components::kPatchRadius;
-            return patch.left > 0 && patch.object.index1 == object.id.index1 &&
-                   patch.object.generation == object.id.generation && apart < far * far;
+            const float far = splash.radius + components::kPatchRadius;
+            return patch.left > 0 && same(patch.object, object) &&
+                   squaredDistance(patch.place, splash.position) < far * far;
         };
-        for (uint32_t k = 0; k < components::kJetPatches; ++k) {
-            JetPatch& patch = emitter.stream->patches[k];
-            JetPatch& before = emitter.stream->before[k];
-            if (isHit(before)) components::wetPatch(before, grams, tick);
-            if (!isHit(patch)) continue;
-            components::wetPatch(patch, grams, tick);
-            context_.recorder.record(WetPatch{i, k, grams, tick});
-        }
+        for (auto [i, emitter] : emitters_.entries())
+            for (uint32_t k = 0; emitter.stream && k < components::kJetPatches; ++k) {
+                JetPatch& patch = emitter.stream->patches[k];
+                JetPatch& before = emitter.stream->before[k];
+                if (isHit(before)) components::wetPatch(before, splash.grams, splash.tick);
+                if (!isHit(patch)) continue;
+                components::wetPatch(patch, splash.grams, splash.tick);
+                if (records) context_.recorder.record(WetPatch{i, k, splash.grams, splash.tick});
+            }
     }
 }
 
@@ -682,18 +661,13 @@ void EmitterSystem::heatStepThin(FireEmitter& emitter, Object& object, const Jet
                                  float radius, float flux, uint32_t now) {
     const uint32_t material = scene_.texelMaterial(object, hit.texel);
     if (!components::burns(object.data, material)) return;
-    components::JetTouch* touch = nullptr;
-    for (components::JetTouch& one : emitter.touches)
-        if (one.object.index1 == object.id.index1 && one.object.generation == object.id.generation)
-            touch = &one;
-    for (components::JetTouch& one : emitter.touches)
-        if (!touch && one.object.index1 == 0) {
-            touch = &one;
-            *touch = {};
-            touch->object = object.id;
-            touch->since = now;
-        }
+    components::JetTouch* touch = touchOf(emitter.touches, object.id);
     if (!touch) return;
+    if (touch->object.index1 == 0) {
+        *touch = {};
+        touch->object = object.id;
+        touch->since = now;
+    }
     touch->seen = true;
     const FwMaterialDef& of = object.data.materials[material];
     if (now - touch->since <

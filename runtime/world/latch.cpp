@@ -11,7 +11,9 @@ namespace fw::world {
 void BurnSystem::addLatch(Object& object, const components::Latch& latch, bool due) noexcept {
     object.planStamp = state_.planStamp;
     object.latchIndex = frame_.latches.size();
-    frame_.latches.push_back({&object, latch, due});  // capacity was reserved at its creation
+    FW_ASSERT(frame_.latches.size() < frame_.latches.capacity(), "%zu latches",
+              frame_.latches.size());
+    frame_.latches.push_back({&object, latch, due});
 }
 
 // Whether other records change anything of an object that no event addresses. A readback may be
@@ -44,6 +46,8 @@ void BurnSystem::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         if (i > firstEvent && frame_.events[i - 1].object == slot) continue;
         Object& object = scene_.objectAt(slot);
         if (object.planStamp == state_.planStamp) {
+            FW_ASSERT(object.latchIndex < frame_.latches.size(), "%zu of %zu latches",
+                      object.latchIndex, frame_.latches.size());
             Frame::LatchOf& known = frame_.latches[object.latchIndex];
             known.due = true;
             if (!known.latch.sent) sendRecords(object, wind_.driveInput(object, now), known.latch);
@@ -93,21 +97,21 @@ void BurnSystem::touchNear(uint32_t now) {
         latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         addLatch(object, latch, true);
     };
-    if (exchange_.state().book.flags & FW_WORLD_EMBERS) {
-        for (const uint32_t slot : exchange_.state().book.waiting) add(slot);
+    if (exchange_.transfer().flags & FW_WORLD_EMBERS) {
+        for (const uint32_t slot : exchange_.transfer().waiting) add(slot);
         frame_.waitersTouched = true;
         return;
     }
     const auto addNear = [&](const Object& object) {
-        for (const uint32_t entry : exchange_.state().book.neighbours.of(object.slot))
+        for (const uint32_t entry : exchange_.transfer().neighbours.of(object.slot))
             add(entry & Neighbours::kSlot);
     };
     // Once all neighbours of touched objects are touched, only other lists and other objects can
     // bring more.
-    if (!exchange_.state().book.spreadKnown)
+    if (!exchange_.transfer().spreadKnown)
         for (const Object* object : scene_.touched) addNear(*object);
     else
-        for (const uint32_t slot : exchange_.state().book.neighbours.changed())
+        for (const uint32_t slot : exchange_.transfer().neighbours.changed())
             if (const auto* owned = scene_.objects.at(slot);
                 owned && ((*owned)->touched || (*owned)->planStamp == state_.planStamp))
                 addNear(**owned);

@@ -5,6 +5,7 @@
 #include "shared/particle.h"
 #include "world/emitter_system.h"
 #include "world/flame_system.h"
+#include "world/geometry.h"
 #include "world/shift.h"
 
 #include <algorithm>
@@ -16,23 +17,27 @@ namespace fw::world {
 LightSystem::LightSystem(const WorldContext& context, Scene& scene, const FlameSystem& flames,
                          const EmitterSystem& emitters)
     : context_(context), scene_(scene), flames_(flames), emitters_(emitters) {
-    state_.lights.reserve(limits::kLights);
-    state_.before.reserve(limits::kLights);
-    state_.shown.reserve(2 * limits::kLights);
+    lights_.reserve(limits::kLights);
+    before_.reserve(limits::kLights);
+    shown_.reserve(2 * limits::kLights);
     kept_.reserve(limits::kLights);
     // Of meshes, of fires, of emitters.
     sources_.reserve(2 * limits::kLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
     taken_.reserve(sources_.capacity());
 }
 
+uint32_t LightSystem::nextId() noexcept {
+    const uint32_t id = next_++;
+    if (next_ == 0) next_ = 1;
+    return id;
+}
+
 void LightSystem::onReadback(const gpu::Readback& readback) noexcept {
-    state_.before.swap(state_.lights);
-    state_.lights.clear();
-    uint64_t taken = 0;  // bits of state_.before, at most 64
+    before_.swap(lights_);
+    lights_.clear();
+    uint64_t taken = 0;  // bits of before_, at most 64
     for (const gpu::BurnLight& given : readback.lights) {
-        if (state_.lights.size() ==
-            std::min<size_t>(context_.def.maxLights, state_.lights.capacity()))
-            break;
+        if (lights_.size() == std::min<size_t>(context_.def.maxLights, lights_.capacity())) break;
         FwLight light{};
         for (int i = 0; i < 3; ++i) {
             light.position[i] = given.positionRadius[i];
@@ -44,61 +49,56 @@ void LightSystem::onReadback(const gpu::Readback& readback) noexcept {
         light.power = given.release;
         light.frameIndex = readback.frameIndex;
         // The nearest old light within reach is the same fire.
-        size_t best = state_.before.size();
+        size_t best = before_.size();
         float bestDistance = 4 * (light.radius + 0.25f) * (light.radius + 0.25f);
-        for (size_t i = 0; i < state_.before.size(); ++i) {
+        for (size_t i = 0; i < before_.size(); ++i) {
             if (taken >> i & 1) continue;
-            float distance = 0;
-            for (int k = 0; k < 3; ++k) {
-                const float d = state_.before[i].position[k] - light.position[k];
-                distance += d * d;
-            }
+            const float distance = squaredDistance(before_[i].position, light.position);
             if (distance < bestDistance) {
                 bestDistance = distance;
                 best = i;
             }
         }
-        if (best < state_.before.size()) {
+        FW_ASSERT(before_.size() <= 64 && lights_.size() < lights_.capacity(), "%zu lights",
+                  lights_.size());
+        if (best < before_.size()) {
             taken |= uint64_t(1) << best;
-            light.id = state_.before[best].id;
+            light.id = before_[best].id;
         } else {
-            light.id = state_.next++;
-            if (state_.next == 0) state_.next = 1;
+            light.id = nextId();
         }
-        state_.lights.push_back(light);
+        lights_.push_back(light);
     }
-    if (state_.due) state_.shown.assign(state_.lights.begin(), state_.lights.end());
-    state_.due = false;
+    if (due_) shown_.assign(lights_.begin(), lights_.end());
+    due_ = false;
 }
 
 // One light for each burning mesh, in its middle.
 void LightSystem::showSaved() noexcept {
-    state_.lights.clear();
+    lights_.clear();
     for (const Object* object : scene_.touched) {
-        if (object->counters.burning == 0 || state_.lights.size() == context_.def.maxLights)
-            continue;
+        if (object->counters.burning == 0 || lights_.size() == context_.def.maxLights) continue;
         const mesh::BurnDomain& domain = scene_.domainOf(*object);
         float middle[3];
-        for (int i = 0; i < 3; ++i) middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
+        middleOf(domain, middle);
         FwLight light{};
         components::toWorld(object->data.pose, middle, light.position);
         light.color[0] = 1.717f, light.color[1] = 0.858f, light.color[2] = 0.292f;
         light.radius = std::sqrt(scene_.burningAreaOf(*object) / 3.14159265f);
         light.power = scene_.powerOf(*object);
         light.intensity = light.power * (components::kLightShare / components::kSphere);
-        light.id = state_.next++;
-        if (state_.next == 0) state_.next = 1;
+        light.id = nextId();
         light.frameIndex = context_.lastFrame;
-        state_.lights.push_back(light);
+        lights_.push_back(light);
     }
-    state_.shown.assign(state_.lights.begin(),
-                        state_.lights.end());  // capacity was reserved at the start
-    state_.due = true;
+    shown_.assign(lights_.begin(),
+                  lights_.end());  // capacity was reserved at the start
+    due_ = true;
 }
 
 // Once a frame: meshes' lights come with readbacks, a few times a second.
-void LightSystem::commit(float seconds) {
-    components::followLights(state_.shown, state_.lights, seconds, context_.def.maxLights);
+void LightSystem::commit(const HostFrame& frame) {
+    components::followLights(shown_, lights_, frame.seconds, context_.def.maxLights);
     // Lights that were chosen among more than maxLights stay chosen.
     std::array<FwLight, limits::kLights> gathered;
     const uint32_t count = gather({gathered.data(), context_.def.maxLights});
@@ -108,30 +108,29 @@ void LightSystem::commit(float seconds) {
 
 uint32_t LightSystem::gather(std::span<FwLight> out) {
     sources_.clear();
-    for (FwLight light : state_.shown) {
+    for (FwLight light : shown_) {
         light.intensity *=
-            components::flicker(emitters_.state().time, components::flickerPhase(light.id));
+            components::flicker(emitters_.time(), components::flickerPhase(light.id));
         sources_.push_back(light);
     }
-    for (auto [i, entry] : flames_.state().fires.entries()) {
+    for (auto [i, entry] : flames_.fires().entries()) {
         const components::VolumetricFire& fire = entry.data;
         if (fire.state.flames == 0 || (fire.flags & (FW_FIRE_HIDDEN | FW_FIRE_NO_LIGHT))) continue;
         sources_.push_back(components::fireLight(fire, 0x80000000u | i, context_.lastFrame));
     }
-    for (uint32_t i = 0; i < emitters_.state().emitters.slotCount(); ++i) {
-        const components::FireEmitter* emitter = emitters_.state().emitters.at(i);
+    for (auto [i, emitter] : emitters_.emitters().entries()) {
         // A mesh that burns shines by itself.
-        if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH ||
-            (emitter->def.flags & (FW_EMITTER_HIDDEN | FW_EMITTER_NO_LIGHT)))
+        if (emitter.births.filled == 0 || emitter.def.shape == FW_EMITTER_MESH ||
+            (emitter.def.flags & (FW_EMITTER_HIDDEN | FW_EMITTER_NO_LIGHT)))
             continue;
-        sources_.push_back(components::emitterLight(*emitter, emitters_.airOf(*emitter, 0),
+        sources_.push_back(components::emitterLight(emitter, emitters_.airOf(emitter, 0),
                                                     0x40000000u | i, context_.lastFrame));
     }
     return components::gatherLights(sources_, kept_, context_.def.maxLights, out, taken_);
 }
 
 void LightSystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto* lights : {&state_.lights, &state_.before, &state_.shown})
+    for (auto* lights : {&lights_, &before_, &shown_})
         for (FwLight& light : *lights) moveBy(light.position, by);
 }
 

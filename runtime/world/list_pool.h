@@ -77,6 +77,7 @@ class ListPool {
     }
     // Before entry `at`, where reserve has found room.
     void insert(ListPlace& list, uint32_t at, const T& value) noexcept {
+        FW_ASSERT(list.count < list.room && at <= list.count, "entry %u of %u", at, list.count);
         T* data = all_.data() + list.first;
         std::memmove(data + at + 1, data + at, (list.count - at) * sizeof(T));
         data[at] = value;
@@ -84,6 +85,7 @@ class ListPool {
         mark(list.first + at, list.count - at);
     }
     void erase(ListPlace& list, uint32_t at) noexcept {
+        FW_ASSERT(at < list.count, "entry %u of %u", at, list.count);
         T* data = all_.data() + list.first;
         std::memmove(data + at, data + at + 1, (list.count - at - 1) * sizeof(T));
         mark(list.first + at, list.count - at);
@@ -91,6 +93,7 @@ class ListPool {
     }
     // Other entries, for which reserve has found room.
     void assign(ListPlace& list, std::span<const T> values) noexcept {
+        FW_ASSERT(values.size() <= list.room, "%zu entries in %u", values.size(), list.room);
         T* data = all_.data() + list.first;
         mark(list.first, std::max(list.count, uint32_t(values.size())));
         std::fill_n(data, list.count, none_);
@@ -109,6 +112,8 @@ class ListPool {
     // Marks entries as changed since `settle`. A caller that writes into a list calls it.
     void mark(uint32_t first, uint32_t count) noexcept {
         if (count == 0) return;
+        FW_ASSERT(uint64_t(first) + count <= all_.size(), "%u and %u more of %zu", first, count,
+                  all_.size());
         for (uint32_t block = first / kBlock; block <= (first + count - 1) / kBlock; ++block)
             changed_[block / 64] |= uint64_t(1) << block % 64;
     }
@@ -154,6 +159,7 @@ class ListPool {
     }
     void release(const ListPlace& list) noexcept {
         if (list.room == 0) return;
+        FW_ASSERT(sizeOf(list.room) < sizes_.size(), "a place of %u", list.room);
         std::fill_n(all_.begin() + list.first, list.room, none_);
         mark(list.first, list.count);
         sizes_[sizeOf(list.room)].free.push_back(list.first);

@@ -1,10 +1,10 @@
 // Presets as the edge hands them out.
 #pragma once
-#include "flamewright/flamewright.h"
+#include "fire/presets.h"
 
 namespace fw::world {
 
-FwMaterialDef presetDef(uint32_t preset) noexcept;  // of a known preset; structSize is set
-const char* presetName(uint32_t preset) noexcept;   // never null
+using fire::presetDef;
+using fire::presetName;
 
 }  // namespace fw::world

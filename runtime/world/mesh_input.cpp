@@ -21,18 +21,11 @@ std::span<const T> optional(const T* data, size_t count) {
 }
 
 Input makeInput(const FwMeshDef& def, std::pmr::memory_resource* memory) {
-    if (def.flags & ~uint32_t(FW_MESH_TRUST_UVS))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::flags is 0x%x; the known flags are 0x1.",
-                   def.flags);
-    if (def.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::reserved is %u; it is zero.",
-                   def.reserved);
+    components::checkFlags(def.flags, "FwMeshDef::flags", FW_MESH_TRUST_UVS);
+    components::checkWhole(def.reserved, "FwMeshDef::reserved", 0, 0);
     if (!def.positions) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::positions is null.");
     if (!def.indices) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::indices is null.");
-    if (def.vertexCount < 3 || def.vertexCount > kMostVertices)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMeshDef::vertexCount is %u; the limits are [3, %u].", def.vertexCount,
-                   kMostVertices);
+    components::checkWhole(def.vertexCount, "FwMeshDef::vertexCount", 3, kMostVertices);
     if (def.indexCount < 3 || def.indexCount > kMaxIndices || def.indexCount % 3 != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwMeshDef::indexCount is %u; it is a multiple of 3 in [3, %u].", def.indexCount,
@@ -40,9 +33,7 @@ Input makeInput(const FwMeshDef& def, std::pmr::memory_resource* memory) {
     if (def.indexSize != 2 && def.indexSize != 4)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::indexSize is %u; it is 2 or 4 bytes.",
                    def.indexSize);
-    if (def.mapSize < 8 || def.mapSize > 4096)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::mapSize is %u; the limits are [8, 4096].",
-                   def.mapSize);
+    components::checkWhole(def.mapSize, "FwMeshDef::mapSize", 8, 4096);
     if (!(def.texelsPerMetre > 0))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwMeshDef::texelsPerMetre is %g; the limits are (0, 4096].",

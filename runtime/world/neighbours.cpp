@@ -18,13 +18,16 @@ uint32_t indexOf(std::span<const uint32_t> list, uint32_t other) noexcept {
 }  // namespace
 
 void Neighbours::note(uint32_t slot) noexcept {
+    FW_ASSERT(slot < isChanged_.size(), "%u of %zu lists", slot, isChanged_.size());
     if (isChanged_[slot]) return;
+    FW_ASSERT(changed_.size() < changed_.capacity(), "%zu lists", changed_.size());
     isChanged_[slot] = 1;
     changed_.push_back(slot);
 }
 
 void Neighbours::add(uint32_t slot, uint32_t other) noexcept {
     ListPlace& list = lists_[slot];
+    FW_ASSERT(slot != other && other <= kSlot, "%u next to %u", slot, other);
     pool_.insert(list, indexOf(pool_.of(list), other), other | kAllSeen);
     note(slot);
 }
@@ -82,6 +85,7 @@ void Neighbours::remove(uint32_t slot) noexcept {
 void Neighbours::see(uint32_t slot, uint32_t other, uint32_t part) noexcept {
     const ListPlace& list = lists_[slot];
     const uint32_t at = indexOf(pool_.of(list), other), entry = other | part << 24;
+    FW_ASSERT(at < list.count && part <= 255, "neighbour %u of %u, part %u", at, list.count, part);
     if (pool_.of(list)[at] == entry) return;
     pool_.of(list)[at] = entry;
     pool_.mark(list.first + at, 1);

@@ -155,7 +155,7 @@ struct ObjectState {
     uint32_t zoneWind = 0;              // that zones add where it is, packed
     bool touched = false;               // an event addressed it: it filters wind and latches
     bool carried = false;               // from another: its energy so far is none of its own power
-    bool exchangeDue = false;  // pose or def changed since its latch: it is in TransferState::due
+    bool exchangeDue = false;      // pose or def changed since its latch: it is in Scene::moved
     gpu::ExchangeObject remote{};  // as other objects see it, latched at each exchange
     BurnLifecycle lifecycle;
     gpu::ObjectCounters counters{};  // as of the last readback

@@ -1,4 +1,5 @@
-// Events of texels that wait for the step in which they happen.
+// Events of texels that wait for the step in which they happen, water that fell, and questions of
+// jets to the backend.
 #pragma once
 #include "components/fire_emitter.h"
 #include "gpu/backend.h"
@@ -26,10 +27,28 @@ struct PendingTexel {  // an event that waits for its step; texel kAllTexels: of
     }
 };
 
+// Water or dousing that reached an object: it falls on fuel that sticks there, too.
+struct Splash {
+    uint32_t slot = 0;
+    float position[3] = {}, radius = 0;  // m, world
+    uint32_t grams = 0;                  // per m^2
+    uint32_t tick = 0;
+};
+
+// Asks whether what a ray of a jet struck still stands.
+struct JetProbe {
+    FwFireEmitterId emitter{};
+    FwBurnableMeshId object{};
+    uint32_t texel = 0, ray = 0;
+    uint32_t holeTicks = 0;  // ticks from ignition to burn-through
+    bool gone = false;       // the answer
+};
+
 inline bool isCarry(const PendingTexel& event) noexcept {
     return gpu::eventKind(event.kind) == gpu::kEventCarry;
 }
 inline uint32_t carriedFrom(const PendingTexel& event) noexcept {  // slot
+    FW_ASSERT(isCarry(event), "kind 0x%x", event.kind);
     return (event.kind >> gpu::kEventKindBits) - 1;
 }
 

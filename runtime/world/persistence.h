@@ -2,9 +2,8 @@
 // writes the states of all systems.
 #pragma once
 #include "components/fire_emitter.h"
-#include "world/command_log.h"
+#include "world/recording.h"
 #include "world/scene.h"
-#include "world/timeline.h"
 
 #include <array>
 #include <span>
@@ -16,6 +15,7 @@ struct Save;
 struct BurnRecords;
 struct ImageStore;
 struct ObjectSnapshot;
+struct RestoredObjects;
 struct Snapshot;
 struct Tag;
 
@@ -37,7 +37,7 @@ class PersistenceSystem {
 
     // recording.cpp
     Recording& startRecording(bool follows);
-    void stopRecording() noexcept { recording_ = {}; }
+    void stopRecording() noexcept { recorder_.network = {}; }
     // command_log.cpp
     void startLog();
     void stopLog() noexcept;
@@ -73,20 +73,13 @@ class PersistenceSystem {
     // each other.
     [[nodiscard]] uint64_t identity() noexcept;
 
-    // For the systems, whose calls of the host's are recorded.
-    void mayChange() const;  // throws where another machine's commands alone count
-    [[nodiscard]] bool records() const noexcept { return recording_ || commandLog_ || timeline_; }
-    void record(const Command& command) noexcept;
-
-    // A frame: its end is `time.after`.
     void checkFrame(float deltaTime) const;
-    void plan(const ClockAdvance& time);
-    void fillPlan(gpu::FramePlan& plan) const noexcept { plan.images = images_; }
-    void commitTimeline(uint64_t before) noexcept;
-    void commitSave(uint64_t frameIndex) noexcept;
+    void plan(const HostFrame& frame, gpu::FramePlan& plan);  // throws std::bad_alloc
+    void commit(const HostFrame& frame) noexcept;
     void onBurnMap(const gpu::BurnMap& map, const gpu::Readback& readback);
     void completeSaves(const gpu::Readback& readback) noexcept;
-    void forgetTag(const Tag& tag, uint64_t frameIndex) noexcept;  // that an event reported
+    void forgetTags(std::span<const Tag> reached, uint64_t frameIndex) noexcept;
+    [[nodiscard]] std::span<const uint32_t> hashed() const noexcept { return hashed_; }
 
  private:
     [[nodiscard]] uint64_t assetOf(const Object& object) noexcept;
@@ -96,15 +89,14 @@ class PersistenceSystem {
     explainUnsavable() noexcept;  // a burning object's slot + 1; 0: there is none
     // timeline.cpp
     void planTimeline(uint64_t after) noexcept;
+    void commitTimeline(uint64_t before) noexcept;
+    void commitSave(uint64_t frameIndex) noexcept;
     void keepKeyframe() noexcept;
-    void recordInTimeline(const Command& command) noexcept;
     void capture(Snapshot& to);
     void captureObject(Object& object, ObjectSnapshot& to) noexcept;
     void completeSave(Save& save, const gpu::Readback& readback);
     void captureEvents(Save& save);
-    static void forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept;
-    void planHashes(const ClockAdvance& time);
-    void recordSave() noexcept;
+    void planHashes(const HostFrame& frame);
     void recordHash(const gpu::BurnMap& map, const gpu::Readback& readback);
     // Throws unless the snapshot fits this world, whose ids it then has.
     void checkSnapshot(Snapshot& snapshot);
@@ -113,16 +105,22 @@ class PersistenceSystem {
                           components::Latch& latch);
     bool readObject(std::span<const std::byte> save, uint32_t slot, Snapshot& snapshot,
                     ImageStore& store);
-    void apply(const Snapshot& snapshot, std::span<const components::Latch> latches) noexcept;
-    void applyObject(const ObjectSnapshot& from, const components::Latch& latch,
-                     Object& object) noexcept;
+    size_t applyUntilNow(std::span<const LogEntry> entries, const char* name);
+    void readObjects(const Snapshot& snapshot, RestoredObjects& out);
+    void restore(Snapshot& snapshot, const RestoredObjects& objects) noexcept;
+    void restoreObject(const ObjectSnapshot& from, const components::Latch& latch,
+                       Object& object) noexcept;
+    void restoreBreaks(const Snapshot& snapshot, const RestoredObjects& objects) noexcept;
+    void restoreRecords() noexcept;  // saves, the timeline and the network: of another past
 
     World& world_;
+    WorldContext& context_;
+    Scene& scene_;
+    Recorder& recorder_;
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
-    core::Owned<Recording> recording_;                             // null: nobody asks
-    core::Owned<CommandLog> commandLog_, playedLog_;               // null: none
-    core::Owned<Timeline> timeline_;                               // null: none is kept
-    std::pmr::vector<uint32_t> images_;  // of a frame: slots of objects that a save takes
+    core::Owned<CommandLog> playedLog_;                            // null: none
+    // Of a frame: slots of objects that a save takes, and of those whose hash is due.
+    std::pmr::vector<uint32_t> images_, hashed_;
 };
 
 }  // namespace fw::world

@@ -6,9 +6,8 @@
 #include "core/stream.h"
 #include "save/plane.h"
 #include "world/burn_system.h"
-#include "world/persistence.h"
-#include "world/query_system.h"
-#include "world/save.h"
+#include "world/recording.h"
+#include "world/saved_object.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kBurnMagic = 0x42425746;  // "FWBB"
+constexpr char kBurnMagic[] = "FWBB";
 constexpr uint32_t kBurnVersion = 1;
 constexpr size_t kBurnHead = 16;           // magic, version, checksum of the rest
 constexpr uint32_t kMaxBurnSide = 4096;    // texels, as of a map
@@ -57,8 +56,7 @@ void writeBurn(std::span<const uint32_t> state, uint64_t mesh, uint32_t width, u
     for (const uint32_t t : state) plane.push_back(gpu::isSource(t) ? t - first + 1 : 0);
     out.clear();
     core::Writer writer(out);
-    writer.number(kBurnMagic);
-    writer.number(kBurnVersion);
+    save::writeHead(writer, kBurnMagic, kBurnVersion);
     writer.number(uint64_t(0));  // the checksum's place
     writer.number(mesh);
     writer.number(width);
@@ -70,14 +68,7 @@ void writeBurn(std::span<const uint32_t> state, uint64_t mesh, uint32_t width, u
 
 void readBurn(std::span<const std::byte> bytes, Burn& burn) {
     core::Reader reader(bytes, "baked burn");
-    uint32_t magic = 0, version = 0;
-    reader.number(magic);
-    if (magic != kBurnMagic)
-        core::fail(FW_ERROR_BAD_DATA, "The baked burn does not begin with \"FWBB\".");
-    reader.number(version);
-    if (version != kBurnVersion)
-        core::fail(FW_ERROR_BAD_DATA, "The baked burn has format version %u; %u is read.", version,
-                   kBurnVersion);
+    save::readHead(reader, kBurnMagic, kBurnVersion);
     reader.number(burn.hash);
     if (burn.hash != core::hashBytes(bytes.subspan(kBurnHead)))
         core::fail(FW_ERROR_BAD_DATA,
@@ -106,17 +97,6 @@ void readBurn(std::span<const std::byte> bytes, Burn& burn) {
 
 // ---- the system ---------------------------------------------------------------------------------
 
-const std::pmr::vector<std::byte>* BurnSystem::fetchBurn(FwBurnableMeshId id) {
-    const BurnMapCopy* map = queries_.fetchBurnMap(id);
-    if (!map) return nullptr;
-    Object& object = *scene_.objects.get(id);
-    const mesh::BurnDomain& domain = scene_.domainOf(object);
-    if (std::none_of(map->ticks.begin(), map->ticks.end(), gpu::isSource))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "Nothing of burnable mesh %u has burnt.", id.index1);
-    writeBurn(map->ticks, scene_.meshHash(object), domain.width, domain.height, burnBytes_);
-    return &burnBytes_;
-}
-
 FwBurnId BurnSystem::createBurn(std::span<const std::byte> bytes) {
     auto burn = core::Owned<Burn>::make(context_.memory, context_.memory);
     readBurn(bytes, *burn);
@@ -136,6 +116,12 @@ void BurnSystem::playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float
     context_.recorder.mayChange();
     components::checkValue(delay, "delay", 0.0f, 3600.0f);
     playBurnAt(id, burn, eventTick(delay), speed);
+}
+
+void BurnSystem::apply(const PlayBurn& command) {
+    checkCommandTick(command.tick);
+    playBurnAt(scene_.objects.findId(command.slot), state_.burns.findId(command.burn1 - 1),
+               command.tick, command.speed);
 }
 
 void BurnSystem::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, float speed) {
@@ -184,7 +170,9 @@ void BurnSystem::reservePlays(size_t more) {
     core::growTo(frame_.events, events + 2 * (scene_.playing.size() + 1));
 }
 
-void BurnSystem::startPlay(Object& object) noexcept {  // there is room
+void BurnSystem::startPlay(Object& object) noexcept {
+    FW_ASSERT(scene_.playing.size() < scene_.playing.capacity(), "%zu objects",
+              scene_.playing.size());
     scene_.playing.insert(
         std::lower_bound(scene_.playing.begin(), scene_.playing.end(), &object,
                          [](const Object* a, const Object* b) { return a->slot < b->slot; }),
@@ -207,6 +195,7 @@ size_t BurnSystem::beginPlays(uint64_t end) {
     size_t events = 0;
     for (Object* object : scene_.playing) {
         const Play& play = object->play;
+        FW_ASSERT(play.burn1 != 0 && play.rate > 0, "burn %u, rate %u", play.burn1, play.rate);
         frame_.plays.push_back({object, play});
         const Burn& burn = **state_.burns.at(play.burn1 - 1);
         const auto last = catchFrom(burn, play, end);
@@ -259,13 +248,13 @@ void BurnSystem::turnPlay(const Object& object) noexcept {
         if (entry.object == &object && entry.play.began != 0) entry.play.ends = true;
 }
 
-void BurnSystem::settlePlays(Snapshot& saved) {
+void BurnSystem::settlePlays(const BurnSnapshot& saved, std::span<ObjectSnapshot> objects,
+                             const Clock& clock) {
     size_t events = saved.pending.size(), count = 0;
-    for (ObjectSnapshot& object : saved.objects) {
+    for (ObjectSnapshot& object : objects) {
         Play& play = object.play;
         if (play.burn1 == 0) continue;
-        const core::Owned<Burn>* burn =
-            play.burn1 <= state_.burns.slotCount() ? state_.burns.at(play.burn1 - 1) : nullptr;
+        const core::Owned<Burn>* burn = state_.burns.findSlot(play.burn1 - 1);
         if (!burn || (*burn)->hash != object.burnHash ||
             (*burn)->mesh != scene_.meshHash(scene_.objectAt(object.slot)))
             core::fail(FW_ERROR_BAD_DATA,
@@ -273,7 +262,7 @@ void BurnSystem::settlePlays(Snapshot& saved) {
                        "one here.",
                        object.slot + 1, play.burn1);
         if (play.rate < playRate(kSlowestPlay) || play.rate > playRate(kFastestPlay) ||
-            play.first > Clock::kLastTick || play.began > saved.clock.tick)
+            play.first > Clock::kLastTick || play.began > clock.tick)
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u of the save plays a baked burn as none can be.",
                        object.slot + 1);

@@ -2,6 +2,7 @@
 // that plays one. No front runs on such an object: its texels catch at the ticks of the burn, and
 // heat, flames, lights and exchange follow as for any other. A disturbance makes it live.
 #pragma once
+#include "core/assert.h"
 #include "shared/burn.h"
 
 #include <cstddef>
@@ -42,6 +43,7 @@ struct Play {
         if (burn1 != 0) a(first, rate, began, ends);
     }
     [[nodiscard]] uint64_t tickOf(uint32_t recorded) const noexcept {
+        FW_ASSERT(rate > 0, "burn %u", burn1);
         return first + uint64_t(recorded) * kPlayRate / rate;
     }
 };

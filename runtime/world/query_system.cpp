@@ -10,7 +10,6 @@
 #include "world/emitter_system.h"
 #include "world/exchange_system.h"
 #include "world/light_system.h"
-#include "world/persistence.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
 
@@ -31,8 +30,9 @@ bool startsForecast(const Object& object) noexcept {
 }  // namespace
 
 QuerySystem::QuerySystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
-                         ExchangeSystem& exchange, FlameSystem& flames, EmitterSystem& emitters,
-                         const LightSystem& lights, const BurnSystem& burn)
+                         ExchangeSystem& exchange, FlameSystem& flames,
+                         const EmitterSystem& emitters, const LightSystem& lights,
+                         const BurnSystem& burn)
     : context_(context),
       scene_(scene),
       wind_(wind),
@@ -67,15 +67,15 @@ uint32_t QuerySystem::texelAt(FwBurnableMeshId id, const Object& object,
 void QuerySystem::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag) {
     components::checkLengths(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *scene_.objects.get(id);
-    if (state_.tags.size() >= kMaxTags)
+    if (tags_.size() >= kMaxTags)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu tagged points wait; the limit is %u.",
-                   state_.tags.size(), kMaxTags);
-    state_.tags.push_back({id, texelAt(id, object, position), tag});
+                   tags_.size(), kMaxTags);
+    tags_.push_back({id, texelAt(id, object, position), tag});
 }
 
 void QuerySystem::untagPoint(FwBurnableMeshId id, uint32_t tag) {
     (void)scene_.objects.get(id);
-    std::erase_if(state_.tags,
+    std::erase_if(tags_,
                   [&](const Tag& one) { return one.object.index1 == id.index1 && one.tag == tag; });
 }
 
@@ -125,45 +125,41 @@ void QuerySystem::copyStates(std::pmr::vector<StateCopy>& to) {
         if (!to[object->slot].touched) copy(object->slot, *object);
 }
 
-void QuerySystem::energyLedger(FwEnergyLedger& book) noexcept {
+void QuerySystem::energyLedger(FwEnergyLedger& ledger) noexcept {
     // Of what flames give off (fluxFrom has the same share), in parts that add up.
     constexpr uint64_t kRadiatedPercent = 33;
-    book.frameIndex = context_.readbackFrame;
-    book.objects = scene_.ledgers;
-    book.fuel = book.unburnt = scene_.fuel;
+    ledger.frameIndex = context_.readbackFrame;
+    ledger.objects = scene_.ledgers;
+    ledger.fuel = ledger.unburnt = scene_.fuel;
     for (const Object* touched : scene_.touched) {  // the others have all of theirs
         const Object& object = *touched;
-        book.burningArea += scene_.burningAreaOf(object);
-        book.power += scene_.powerOf(object);
+        ledger.burningArea += scene_.burningAreaOf(object);
+        ledger.power += scene_.powerOf(object);
         if (!components::tracksBurntFuel(object.data)) continue;
         const uint64_t released = object.lifecycle.energy;
         const uint64_t radiated =
             released / 100 * kRadiatedPercent + released % 100 * kRadiatedPercent / 100;
-        book.unburnt -= released;
-        book.radiated += radiated;
-        book.convected += released - radiated;
+        ledger.unburnt -= released;
+        ledger.radiated += radiated;
+        ledger.convected += released - radiated;
     }
 }
 
 Query QuerySystem::makeQuery(FwBurnableMeshId id, const float position[3]) {
     components::checkLengths(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *scene_.objects.get(id);
-    if (state_.queries.live() >= kMaxQueries)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u queries are open; the limit is %u.",
-                   state_.queries.live(), kMaxQueries);
+    checkRoom(queries_, kMaxQueries, "queries");
     Query query;
     query.object = id;
     query.texel = texelAt(id, object, position);
     float place[3];
     scene_.texelPosition(object, query.texel, place);
-    float sum = 0;
-    for (int i = 0; i < 3; ++i) sum += (place[i] - position[i]) * (place[i] - position[i]);
-    query.distance = std::sqrt(sum);
+    query.distance = std::sqrt(squaredDistance(place, position));
     return query;
 }
 
 FwQueryId QuerySystem::requestPoint(FwBurnableMeshId id, const float position[3]) {
-    return state_.queries.create(makeQuery(id, position));
+    return queries_.create(makeQuery(id, position));
 }
 
 FwPointState QuerySystem::pointState(const Object& object, uint32_t texel,
@@ -220,7 +216,8 @@ FwPointState QuerySystem::pointState(const Object& object, uint32_t texel,
 }
 
 Query& QuerySystem::openQuery(FwQueryId id, bool isArrival) {
-    Query& query = state_.queries.get(id);
+    Query& query = queries_.get(id);
+    FW_ASSERT(scene_.objects.find(query.object), "query %u", id.index1);
     if (query.isArrival != isArrival)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "Query %u asks for %s.", id.index1,
                    query.isArrival ? "an arrival; fwWorld_FetchArrival answers it"
@@ -232,7 +229,7 @@ bool QuerySystem::fetchPoint(FwQueryId id, FwPointState& state) {
     const Query& query = openQuery(id, false);
     if (!query.ready) return false;
     state = query.answer;
-    state_.queries.destroy(id);
+    queries_.destroy(id);
     return true;
 }
 
@@ -264,88 +261,113 @@ const BurnMapCopy* QuerySystem::fetchBurnMap(FwBurnableMeshId id) {
     return map.ready ? &map : nullptr;
 }
 
-void QuerySystem::plan() {
-    ProbeFrame& known = currentProbes();
+const std::pmr::vector<std::byte>* QuerySystem::fetchBurn(FwBurnableMeshId id) {
+    const BurnMapCopy* map = fetchBurnMap(id);
+    if (!map) return nullptr;
+    Object& object = *scene_.objects.get(id);
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
+    if (std::none_of(map->ticks.begin(), map->ticks.end(), gpu::isSource))
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "Nothing of burnable mesh %u has burnt.", id.index1);
+    writeBurn(map->ticks, scene_.meshHash(object), domain.width, domain.height, burnBytes_);
+    return &burnBytes_;
+}
+
+void QuerySystem::plan(std::initializer_list<std::span<const uint32_t>> others,
+                       gpu::FramePlan& plan) {
+    ProbeFrame& frame = currentProbes();
+    frame.frameIndex = 0;
+    frame.tags.assign(tags_.begin(), tags_.end());
+    frame.points.clear();
+    frame.points.reserve(queries_.live());
+    for (auto [i, query] : queries_.entries())
+        if (!query.asked && !query.isArrival)
+            frame.points.push_back({queries_.idOf(i), query.object, query.texel});
+    // Jets strike more or less from frame to frame; capacity is that of the emitters' list.
+    for (ProbeFrame& one : probeFrames_) one.jets.reserve(emitters_.mostProbes());
+    frame.jets.assign(emitters_.probes().begin(), emitters_.probes().end());
+    core::growTo(reachedTags_, frame.tags.size());
+    core::growTo(probes_, frame.tags.size() + queries_.live() + emitters_.mostProbes());
     probes_.clear();
-    known.frameIndex = 0;
-    known.refs.clear();
-    const size_t most = state_.tags.size() + state_.queries.live();  // those of jets have room
-    probes_.reserve(most);
-    known.refs.reserve(most);
-    for (const Tag& tag : state_.tags) {
-        probes_.push_back({tag.object.index1 - 1, tag.texel});
-        known.refs.push_back({true, tag.object, tag.texel, tag.tag, {}, 0, 0, 0});
-    }
-    for (auto [i, query] : state_.queries.entries()) {
-        if (query.asked || query.isArrival) continue;
-        probes_.push_back({query.object.index1 - 1, query.texel});
-        known.refs.push_back(
-            {false, query.object, query.texel, 0, state_.queries.idOf(i), 0, 0, 0});
-    }
+    const auto add = [&](const auto& asked) {
+        for (const auto& one : asked) probes_.push_back({one.object.index1 - 1, one.texel});
+    };
+    add(frame.tags), add(frame.points), add(frame.jets);
     requestForecasts();
-    emitters_.probeJets();
     burnMaps_.clear();
-    for (uint32_t i = 0; mapsRequested_ > 0 && i < scene_.objects.slotCount(); ++i)
-        if (auto* object = scene_.objects.at(i);
-            object && burnMaps_.size() < kMaxBurnMapsPerFrame &&
-            ((*object)->map.requested || startsForecast(**object)))
-            burnMaps_.push_back(i);  // the others wait for the next frame
+    if (mapsRequested_ > 0)
+        for (auto [slot, object] : scene_.objects.entries())
+            if (burnMaps_.size() < kMaxBurnMapsPerFrame &&
+                (object.map.requested || startsForecast(object)))
+                burnMaps_.push_back(slot);  // the others wait for the next frame
+    for (const std::span<const uint32_t> slots : others)
+        for (const uint32_t slot : slots) {
+            if (std::find(burnMaps_.begin(), burnMaps_.end(), slot) != burnMaps_.end()) continue;
+            FW_ASSERT(burnMaps_.size() < burnMaps_.capacity(), "%zu burn maps", burnMaps_.size());
+            burnMaps_.push_back(slot);
+        }
+    plan.probes = probes_;
+    plan.burnMaps = burnMaps_;
+}
+
+// An older frame may have reported the tag already.
+void QuerySystem::onTag(const Tag& tag, uint32_t code, const gpu::Readback& readback) noexcept {
+    const auto known = std::find(tags_.begin(), tags_.end(), tag);
+    if (!gpu::isSource(code) || code > readback.endTick || known == tags_.end()) return;
+    FW_ASSERT(reachedTags_.size() < reachedTags_.capacity(), "%zu tags", reachedTags_.size());
+    reachedTags_.push_back(tag);
+    tags_.erase(known);
+    const Object& object = **scene_.objects.find(tag.object);
+    float place[3];
+    scene_.texelPosition(object, tag.texel, place);
+    context_.raise(FW_EVENT_TAG_REACHED, &object, tag.tag, readback.frameIndex, place,
+                   float(double(code) / gpu::kTicksPerSecond));
 }
 
 void QuerySystem::onReadback(const gpu::Readback& readback) noexcept {
-    const auto known = std::find_if(
-        probeFrames_.begin(), probeFrames_.end(),
-        [&](const ProbeFrame& frame) { return frame.frameIndex == readback.frameIndex; });
+    jetAnswers_ = {};
+    reachedTags_.clear();
+    const auto known =
+        std::ranges::find(probeFrames_, readback.frameIndex, &ProbeFrame::frameIndex);
     if (known == probeFrames_.end()) return;
-    const size_t count = std::min(known->refs.size(), readback.answers.size());
-    for (size_t i = 0; i < count; ++i) {
-        const ProbeRef& ref = known->refs[i];
-        auto* owned = scene_.objects.find(ref.object);
-        if (!owned) continue;
-        const Object& object = **owned;
-        const uint32_t code = readback.answers[i].state;
-        if (ref.jet > 0) {
-            const gpu::ProbeAnswer& answer = readback.answers[i];
-            const gpu::HeatTexel x = gpu::unpackHeat({answer.heatX, answer.heatY});
-            const bool gone = answer.heat != 0 && gpu::gateOpens(gpu::kEventGate, ref.holeTicks, x,
-                                                                 code, readback.endTick);
-            emitters_.onHole(ref.jet - 1, ref.ray,
-                             {gone ? ref.object : FwBurnableMeshId{}, ref.texel});
-        } else if (ref.isTag) {
-            if (!gpu::isSource(code) || code > readback.endTick) continue;
-            const auto tag =
-                std::find_if(state_.tags.begin(), state_.tags.end(), [&](const Tag& t) {
-                    return t.object.index1 == ref.object.index1 &&
-                           t.object.generation == ref.object.generation && t.texel == ref.texel &&
-                           t.tag == ref.tag;
-                });
-            if (tag == state_.tags.end()) continue;  // an older frame said so already
-            context_.recorder.forgetTag(*tag, readback.frameIndex);
-            state_.tags.erase(tag);
-            float place[3];
-            scene_.texelPosition(object, ref.texel, place);
-            context_.raise(FW_EVENT_TAG_REACHED, &object, ref.tag, readback.frameIndex, place,
-                           float(double(code) / gpu::kTicksPerSecond));
-        } else if (Query* query = state_.queries.find(ref.query)) {
-            const float distance = query->distance;
-            query->answer = pointState(object, ref.texel, readback.answers[i], readback);
-            query->answer.distance = distance;
-            query->ready = true;
-        }
-    }
     known->frameIndex = 0;
+    size_t next = 0;
+    const auto eachAnswer = [&](auto& probes, const auto& use) {
+        for (auto& probe : probes) {
+            if (next == readback.answers.size()) return;
+            const gpu::ProbeAnswer& answer = readback.answers[next++];
+            if (scene_.objects.find(probe.object)) use(probe, answer);
+        }
+    };
+    eachAnswer(known->tags, [&](const Tag& tag, const gpu::ProbeAnswer& answer) {
+        onTag(tag, answer.state, readback);
+    });
+    eachAnswer(known->points, [&](const PointProbe& probe, const gpu::ProbeAnswer& answer) {
+        Query* query = queries_.find(probe.query);
+        if (!query) return;
+        const float distance = query->distance;
+        query->answer =
+            pointState(**scene_.objects.find(probe.object), probe.texel, answer, readback);
+        query->answer.distance = distance;
+        query->ready = true;
+    });
+    eachAnswer(known->jets, [&](JetProbe& probe, const gpu::ProbeAnswer& answer) {
+        const gpu::HeatTexel heat = gpu::unpackHeat({answer.heatX, answer.heatY});
+        probe.gone = answer.heat != 0 && gpu::gateOpens(gpu::kEventGate, probe.holeTicks, heat,
+                                                        answer.state, readback.endTick);
+    });
+    jetAnswers_ = known->jets;
 }
 
-void QuerySystem::commit(uint64_t frameIndex) noexcept {
-    ProbeFrame& known = currentProbes();
-    known.frameIndex = frameIndex;
-    for (const ProbeRef& ref : known.refs)
-        if (!ref.isTag)
-            if (Query* query = state_.queries.find(ref.query)) query->asked = true;
+void QuerySystem::commit(const HostFrame& host) noexcept {
+    ProbeFrame& frame = currentProbes();
+    frame.frameIndex = host.index;
+    for (const PointProbe& probe : frame.points)
+        if (Query* query = queries_.find(probe.query)) query->asked = true;
     for (uint32_t slot : burnMaps_) {
         Object& object = scene_.objectAt(slot);
         const auto send = [&](bool& requested, bool& pending) {
             if (!requested) return;
+            FW_ASSERT(mapsRequested_ > 0, "burnable mesh %u", object.id.index1);
             requested = false;
             pending = true;
             --mapsRequested_;
@@ -370,54 +392,40 @@ void QuerySystem::onBurnMap(Object& object, const gpu::BurnMap& map,
     copy.ready = true;
 }
 
-void QuerySystem::fillPlan(gpu::FramePlan& plan) const noexcept {
-    plan.probes = probes_;
-    plan.burnMaps = burnMaps_;
-}
-
-void QuerySystem::addBurnMap(uint32_t slot) noexcept {
-    if (std::find(burnMaps_.begin(), burnMaps_.end(), slot) == burnMaps_.end())
-        burnMaps_.push_back(slot);
-}
-
-void QuerySystem::reserveJetProbes(size_t rays) {
-    for (ProbeFrame& frame : probeFrames_) frame.refs.reserve(rays);
-    probes_.reserve(rays);
-}
-
-void QuerySystem::addJetProbe(const components::JetHit& hit, uint32_t slot, uint32_t ray,
-                              uint32_t holeTicks) noexcept {
-    probes_.push_back({hit.object.index1 - 1, hit.texel});
-    ProbeRef ref;
-    ref.object = hit.object;
-    ref.texel = hit.texel;
-    ref.jet = slot + 1;
-    ref.ray = ray;
-    ref.holeTicks = holeTicks;
-    currentProbes().refs.push_back(ref);
-}
-
-// Answers on their way would be another jet's in the slot.
-void QuerySystem::forgetJet(FwFireEmitterId id) noexcept {
-    for (ProbeFrame& frame : probeFrames_)
-        for (ProbeRef& ref : frame.refs)
-            if (ref.jet == id.index1) ref.object = {};
-}
-
 void QuerySystem::forgetObject(const Object& object) noexcept {
     const uint32_t index1 = object.id.index1;
-    std::erase_if(state_.tags, [&](const Tag& tag) { return tag.object.index1 == index1; });
-    for (auto [i, query] : state_.queries.entries())
-        if (query.object.index1 == index1) state_.queries.destroy(state_.queries.idOf(i));
+    std::erase_if(tags_, [&](const Tag& tag) { return tag.object.index1 == index1; });
+    for (auto [i, query] : queries_.entries())
+        if (query.object.index1 == index1) queries_.destroy(queries_.idOf(i));
     std::erase(forecasts_, object.slot);
     if (object.map.requested) --mapsRequested_;
     if (object.forecast && object.forecast->requested) --mapsRequested_;
 }
 
+// Requests to earlier frames are made again.
+void QuerySystem::restore(std::pmr::vector<Tag>& tags) noexcept {
+    tags_.swap(tags);
+    for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
+    for (auto [i, query] : queries_.entries()) query.asked &= query.ready;
+}
+
+void QuerySystem::restoreObject(Object& object) noexcept {
+    const auto again = [&](bool& requested, bool& pending) {
+        if (!pending) return;
+        pending = false;
+        if (!requested) ++mapsRequested_;
+        requested = true;
+    };
+    again(object.map.requested, object.map.pending);
+    if (!object.forecast) return;
+    again(object.forecast->requested, object.forecast->pending);
+    object.forecast->began = false;
+}
+
 void QuerySystem::reserveSlots() { core::growTo(burnMaps_, scene_.objects.slotCount()); }
 
 void QuerySystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto [i, query] : state_.queries.entries())
+    for (auto [i, query] : queries_.entries())
         if (query.ready) moveBy(query.answer.position, by);
 }
 

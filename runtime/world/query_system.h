@@ -4,6 +4,8 @@
 #include "components/jet.h"
 #include "components/surroundings.h"
 #include "host_limits.h"
+#include "world/geometry.h"
+#include "world/pending.h"
 #include "world/scene.h"
 
 namespace fw::world {
@@ -25,6 +27,9 @@ struct StateCopy {            // of the object in a slot
 struct Tag {
     FwBurnableMeshId object{};
     uint32_t texel = 0, tag = 0;
+    bool operator==(const Tag& other) const noexcept {
+        return same(object, other.object) && texel == other.texel && tag == other.tag;
+    }
 
     template <class A>
     void serialize(A& a) {
@@ -43,17 +48,12 @@ struct Query {
     uint64_t since = 0, sinceTick = 0;  // of an arrival: a forecast from there on answers it
 };
 
-struct QueryState {
-    explicit QueryState(std::pmr::memory_resource* memory)
-        : queries("Query", memory), tags(memory) {}
-    core::HandlePool<FwQueryId, Query> queries;
-    std::pmr::vector<Tag> tags;
-};
-
 class QuerySystem {
  public:
+    static constexpr uint32_t kMaxTags = limits::kTags;
+
     QuerySystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
-                ExchangeSystem& exchange, FlameSystem& flames, EmitterSystem& emitters,
+                ExchangeSystem& exchange, FlameSystem& flames, const EmitterSystem& emitters,
                 const LightSystem& lights, const BurnSystem& burn);
 
     uint32_t pollEvents(std::span<FwEvent> out);  // [any]
@@ -68,18 +68,25 @@ class QuerySystem {
     bool fetchPoint(FwQueryId id, FwPointState& state);  // false: not ready
     FwQueryId requestArrival(FwBurnableMeshId id, const float position[3]);
     bool fetchArrival(FwQueryId id, FwArrivalState& state);  // false: not ready
-    void cancel(FwQueryId id) { state_.queries.destroy(id); }
+    void cancel(FwQueryId id) { queries_.destroy(id); }
     void querySurroundings(const float point[3], FwSurroundings& out);
     float querySight(const float from[3], const float to[3]);
     void makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
                         uint32_t columns, uint32_t rows, uint8_t* mask);
+    // A baked burn, made of what requestBurnMap brings. Null: not ready.
+    const std::pmr::vector<std::byte>* fetchBurn(FwBurnableMeshId id);
     // flamewright_debug.h
     void requestBurnMap(FwBurnableMeshId id);
     const BurnMapCopy* fetchBurnMap(FwBurnableMeshId id);  // null: not ready
     void cancelBurnMap(FwBurnableMeshId id);
 
-    void plan();  // throws std::bad_alloc
-    void commit(uint64_t frameIndex) noexcept;
+    [[nodiscard]] const std::pmr::vector<Tag>& tags() const noexcept { return tags_; }
+    void restore(std::pmr::vector<Tag>& tags) noexcept;  // of a save
+    void restoreObject(Object& object) noexcept;
+    // After the emitters listed their probes. `others`: more objects whose whole state the frame
+    // reads back. Throws std::bad_alloc.
+    void plan(std::initializer_list<std::span<const uint32_t>> others, gpu::FramePlan& plan);
+    void commit(const HostFrame& frame) noexcept;
     void onReadback(const gpu::Readback& readback) noexcept;
     void onBurnMap(Object& object, const gpu::BurnMap& map, const gpu::Readback& readback) noexcept;
     void runForecasts() noexcept;
@@ -87,33 +94,28 @@ class QuerySystem {
     void shiftOrigin(const double (&by)[3]) noexcept;
     void reserveSlots();  // throws std::bad_alloc
 
-    // The frame's probes, and the objects whose whole state it reads back.
-    void fillPlan(gpu::FramePlan& plan) const noexcept;
-    void addBurnMap(uint32_t slot) noexcept;  // capacity for all objects is reserved
-    void reserveJetProbes(size_t rays);       // throws std::bad_alloc
-    void addJetProbe(const components::JetHit& hit, uint32_t slot, uint32_t ray,
-                     uint32_t holeTicks) noexcept;
-    void forgetJet(FwFireEmitterId id) noexcept;
+    // Of the last readback: answers to probes of jets, and tags that fire reached.
+    [[nodiscard]] std::span<const JetProbe> jetAnswers() const noexcept { return jetAnswers_; }
+    [[nodiscard]] std::span<const Tag> reachedTags() const noexcept { return reachedTags_; }
 
  private:
-    friend class PersistenceSystem;
-    static constexpr uint32_t kMaxTags = limits::kTags;
     static constexpr uint32_t kMaxQueries = limits::kQueries;
-    static constexpr uint32_t kFramesInFlight =
-        limits::kFramesInFlight;  // readbacks whose probes are still known
+    // Readbacks whose probes are still known.
+    static constexpr uint32_t kFramesInFlight = limits::kFramesInFlight;
 
-    struct ProbeRef {  // what a probe of a frame was for
-        bool isTag = false;
-        FwBurnableMeshId object{};
-        uint32_t texel = 0, tag = 0;
+    struct PointProbe {
         FwQueryId query{};
-        uint32_t jet = 0, ray = 0;  // slot + 1 of an emitter
-        uint32_t holeTicks = 0;     // of a jet's: see gateTicks
+        FwBurnableMeshId object{};
+        uint32_t texel = 0;
     };
+    // A frame's probes, and their answers, are of tags, then of queries, then of jets.
     struct ProbeFrame {
-        explicit ProbeFrame(std::pmr::memory_resource* memory) : refs(memory) {}
+        explicit ProbeFrame(std::pmr::memory_resource* memory)
+            : tags(memory), points(memory), jets(memory) {}
         uint64_t frameIndex = 0;
-        std::pmr::vector<ProbeRef> refs;
+        std::pmr::vector<Tag> tags;
+        std::pmr::vector<PointProbe> points;
+        std::pmr::vector<JetProbe> jets;
     };
 
     [[nodiscard]] ProbeFrame& currentProbes() noexcept {
@@ -123,6 +125,7 @@ class QuerySystem {
     uint32_t texelAt(FwBurnableMeshId id, const Object& object, const float position[3]) const;
     Query makeQuery(FwBurnableMeshId id, const float position[3]);
     Query& openQuery(FwQueryId id, bool isArrival);
+    void onTag(const Tag& tag, uint32_t code, const gpu::Readback& readback) noexcept;
     FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                             const gpu::Readback& readback) const noexcept;
     // arrivals.cpp
@@ -140,14 +143,18 @@ class QuerySystem {
     const WindSystem& wind_;
     ExchangeSystem& exchange_;
     FlameSystem& flames_;
-    EmitterSystem& emitters_;
+    const EmitterSystem& emitters_;
     const LightSystem& lights_;
     const BurnSystem& burn_;
-    QueryState state_{context_.memory};
+    core::HandlePool<FwQueryId, Query> queries_{"Query", context_.memory};
+    std::pmr::vector<Tag> tags_{context_.memory};
     std::pmr::vector<ProbeFrame> probeFrames_{context_.memory};
     std::pmr::vector<gpu::Probe> probes_{context_.memory};  // of a frame
+    std::span<const JetProbe> jetAnswers_;
+    std::pmr::vector<Tag> reachedTags_{context_.memory};
     std::pmr::vector<uint32_t> burnMaps_{context_.memory};  // of a frame: slots of objects
     uint32_t mapsRequested_ = 0;  // that no frame has asked the backend for
+    std::pmr::vector<std::byte> burnBytes_{context_.memory};  // of the last fetchBurn
     std::pmr::vector<uint32_t> forecasts_{
         context_.memory};      // slots of objects that have a forecast
     size_t nextForecast_ = 0;  // of those, whose turn it is

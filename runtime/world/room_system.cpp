@@ -1,6 +1,6 @@
 #include "world/room_system.h"
 
-#include "world/persistence.h"
+#include "world/recording.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
 
@@ -66,9 +66,7 @@ void RoomSystem::fill(RoomEntry& entry, uint32_t oxygen, uint32_t power, uint32_
 }
 
 FwRoomId RoomSystem::create(const FwRoomDef& def) {
-    if (state_.rooms.live() >= gpu::kMaxRooms)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u rooms are there; the limit is %u.",
-                   state_.rooms.live(), gpu::kMaxRooms);
+    checkRoom(state_.rooms, gpu::kMaxRooms, "rooms");
     RoomEntry entry;
     entry.room = components::makeRoom(def);
     fill(entry, entry.room.oxygen);
@@ -133,6 +131,32 @@ void RoomSystem::fillState(FwRoomId id, FwRoomState& state) {
 
 void RoomSystem::onFrameDone(uint64_t stirred) noexcept {
     state_.seenStirred = std::max(state_.seenStirred, stirred);
+}
+
+// Their air goes on from what the frame left.
+void RoomSystem::complete(RoomSnapshot& to, const gpu::Readback& readback) const noexcept {
+    to.stirred = state_.seenStirred;
+    for (Slotted<RoomEntry>& room : to.rooms)
+        if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.air.epoch)
+            room.air = readback.rooms[room.slot];
+}
+
+void RoomSystem::restore(const RoomSnapshot& from) noexcept {
+    state_.met = !from.rooms.empty();
+    for (const Slotted<RoomEntry>& one : from.rooms) {
+        RoomEntry& entry = *state_.rooms.at(one.slot);
+        entry.room = one.room;
+        fill(entry, one.air.oxygen, one.air.power, one.air.flash);
+        entry.air.drawn = one.air.drawn;
+        entry.air.stirs = one.air.stirs;
+        send(one.slot);
+    }
+    state_.stirred = state_.seenStirred = from.stirred;
+}
+
+void RoomSystem::restoreObject(Object& object) noexcept {
+    object.room1 = roomOf(object);
+    state_.met |= object.counters.air != 0;
 }
 
 void RoomSystem::checkShift(const double (&by)[3]) const {

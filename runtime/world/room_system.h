@@ -2,7 +2,9 @@
 // decided there, in the steps, and comes back with readbacks.
 #pragma once
 #include "components/room.h"
+#include "world/command.h"
 #include "world/scene.h"
+#include "world/slotted.h"
 
 namespace fw::world {
 
@@ -15,6 +17,18 @@ struct RoomEntry {
         a(room, air.oxygen, air.power, air.flash, air.drawn, air.stirs);
         a.range("power of a room's fires", air.power, 0,
                 double(gpu::kMaxFlash * (gpu::kRoomMeans - 1)));
+    }
+};
+
+struct RoomSnapshot {
+    explicit RoomSnapshot(std::pmr::memory_resource* memory) : rooms(memory) {}
+    uint64_t stirred = 0;  // tick
+    SlottedList<RoomEntry> rooms;
+
+    template <class A>
+    void serialize(A& a) {
+        a(stirred);
+        a.list("rooms", rooms, 164);
     }
 };
 
@@ -50,9 +64,16 @@ class RoomSystem {
     // Slot + 1 of the first of those that an object is in; 0: none.
     [[nodiscard]] uint32_t roomOf(const Object& object) const noexcept;
     void stir() noexcept;
+    void apply(const SetRoom& command) {
+        set(state_.rooms.findId(command.slot), command.room, command.refills);
+    }
+    void capture(RoomSnapshot& to) const { captureSlots(state_.rooms, to.rooms); }
+    // With the readback of its frame.
+    void complete(RoomSnapshot& to, const gpu::Readback& readback) const noexcept;
+    void restore(const RoomSnapshot& from) noexcept;  // before objects are
+    void restoreObject(Object& object) noexcept;
 
  private:
-    friend class PersistenceSystem;
     void updateObjects(const components::Room& room) noexcept;
     void send(uint32_t slot) noexcept;
     // From here on its air is that; a save adds the fire that burnt so in it.

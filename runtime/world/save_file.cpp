@@ -8,7 +8,7 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kMagic = 0x56535746u;  // "FWSV"
+constexpr char kMagic[] = "FWSV";
 constexpr size_t kHeaderBytes = 24;
 constexpr const char* kSaveName = "save";
 
@@ -155,7 +155,7 @@ void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain
 void writeSnapshot(const Snapshot& snapshot, std::pmr::vector<std::byte>& out) {
     out.clear();
     save::Writer writer(out);
-    writer(kMagic, kSaveVersion);
+    save::writeHead(writer, kMagic, kSaveVersion);
     const uint64_t later = 0;
     writer(later, later, snapshot);
     const auto content = std::span(out).subspan(kHeaderBytes);
@@ -167,19 +167,10 @@ void readSnapshot(std::span<const std::byte> bytes, Snapshot& snapshot) {
     if (bytes.size() < kHeaderBytes)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes; its header alone has %zu.",
                    bytes.size(), kHeaderBytes);
-    save::Reader reader(bytes, kSaveName, snapshot.zones.get_allocator().resource());
-    uint32_t magic = 0, version = 0;
+    save::Reader reader(bytes, kSaveName, snapshot.memory);
     uint64_t size = 0, sum = 0;
-    reader(magic, version, size, sum);
-    if (magic != kMagic)
-        core::fail(FW_ERROR_BAD_DATA, "The save begins with 0x%08X; 0x%08X (\"FWSV\") is expected.",
-                   magic, kMagic);
-    if (version != kSaveVersion)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The save has format version %u; this library reads version %u alone. %s",
-                   version, kSaveVersion,
-                   version < kSaveVersion ? "Load it with the older library that wrote it."
-                                          : "Load it with the newer library that wrote it.");
+    save::readHead(reader, kMagic, kSaveVersion);
+    reader(size, sum);
     const auto content = bytes.subspan(kHeaderBytes);
     if (size != content.size())
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes of content; its header says %llu.",
@@ -192,8 +183,6 @@ void readSnapshot(std::span<const std::byte> bytes, Snapshot& snapshot) {
     reader(snapshot);
     if (reader.left() != 0)
         core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the content of the save.", reader.left());
-    snapshot.zones.assign(snapshot.windZones.begin(), snapshot.windZones.end());
-    components::sortWindZones(snapshot.zones);
 }
 
 }  // namespace fw::world

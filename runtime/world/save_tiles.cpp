@@ -33,6 +33,7 @@ void eachCell(const BlockGrid& grid, std::span<const uint32_t> blocks, uint32_t 
     const uint32_t side = grid.side * cellsPerTile;
     size_t to = 0;
     for (const uint32_t block : blocks) {
+        FW_ASSERT(block < grid.count(), "block %u of %u", block, grid.count());
         const uint32_t left = block % grid.across * side, top = block / grid.across * side;
         for (uint32_t y = 0; y < side; ++y)
             for (uint32_t x = 0; x < side; ++x, ++to)
@@ -54,6 +55,23 @@ mesh::BurnDomain stripeOf(const mesh::BurnDomain& domain, const BlockGrid& grid,
     return stripe;
 }
 
+// direction(stripe index, map index): the indices that it copies from and to.
+template <class Direction>
+void copyCells(const ImageStore& from, ImageStore& to, const mesh::BurnDomain& domain,
+               const BlockGrid& grid, std::span<const uint32_t> blocks,
+               const Direction& direction) {
+    eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t stripe, size_t map) {
+        const auto [source, target] = direction(stripe, map);
+        to.ticks[target] = from.ticks[source];
+        if (!from.heat.empty()) to.heat[target] = from.heat[source];
+    });
+    eachCell(grid, blocks, 1, domain.tilesX, domain.tilesY, [&](size_t stripe, size_t map) {
+        const auto [source, target] = direction(stripe, map);
+        to.tiles[target] = from.tiles[source];
+        to.tileHeat[target] = from.tileHeat[source];
+    });
+}
+
 ImageStore copyTileBlocks(const ImageStore& whole, const mesh::BurnDomain& domain,
                           const BlockGrid& grid, std::span<const uint32_t> blocks,
                           std::pmr::memory_resource* memory) {
@@ -64,14 +82,8 @@ ImageStore copyTileBlocks(const ImageStore& whole, const mesh::BurnDomain& domai
     part.heat.assign(whole.heat.empty() ? 0 : texels, gpu::uvec2(0, 0));
     part.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kNeverChanged, 0});
     part.tileHeat.assign(tiles, gpu::TileHeat{});
-    eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t to, size_t from) {
-        part.ticks[to] = whole.ticks[from];
-        if (!whole.heat.empty()) part.heat[to] = whole.heat[from];
-    });
-    eachCell(grid, blocks, 1, domain.tilesX, domain.tilesY, [&](size_t to, size_t from) {
-        part.tiles[to] = whole.tiles[from];
-        part.tileHeat[to] = whole.tileHeat[from];
-    });
+    copyCells(whole, part, domain, grid, blocks,
+              [](size_t stripe, size_t map) { return std::pair(map, stripe); });
     return part;
 }
 
@@ -119,45 +131,43 @@ bool PersistenceSystem::readObject(std::span<const std::byte> save, uint32_t slo
     if (!object || !object->touched) return false;
     components::Latch latch;
     const BurnRecords records = recordsOf(saved, *object, latch);
-    readImage(object->planes, world_.scene_.domainOf(world_.scene_.objectAt(slot)),
-              uint32_t(saved.clock.tick), records.window, records.heatSpan(), store);
+    readImage(object->planes, scene_.domainOf(scene_.objectAt(slot)), uint32_t(saved.clock.tick),
+              records.window, records.heatSpan(), store);
     return true;
 }
 
 std::pmr::vector<uint32_t> PersistenceSystem::hashBlocks(std::span<const std::byte> save,
                                                          uint32_t slot) {
-    Snapshot saved(world_.context_.memory);
-    ImageStore store(world_.context_.memory);
-    if (!readObject(save, slot, saved, store))
-        return std::pmr::vector<uint32_t>(world_.context_.memory);
-    return hashesOf(store, world_.scene_.domainOf(world_.scene_.objectAt(slot)),
-                    world_.context_.memory);
+    Snapshot saved(context_.memory);
+    ImageStore store(context_.memory);
+    if (!readObject(save, slot, saved, store)) return std::pmr::vector<uint32_t>(context_.memory);
+    return hashesOf(store, scene_.domainOf(scene_.objectAt(slot)), context_.memory);
 }
 
 bool PersistenceSystem::writeBlocks(std::span<const std::byte> save, uint32_t slot,
                                     std::span<const uint32_t> theirs,
                                     std::pmr::vector<std::byte>& out) {
-    Snapshot saved(world_.context_.memory);
-    ImageStore store(world_.context_.memory);
+    Snapshot saved(context_.memory);
+    ImageStore store(context_.memory);
     if (!readObject(save, slot, saved, store)) return false;
-    const mesh::BurnDomain& domain = world_.scene_.domainOf(world_.scene_.objectAt(slot));
+    const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(slot));
     const BlockGrid grid = gridOf(domain);
-    const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, world_.context_.memory);
+    const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, context_.memory);
     if (theirs.size() != ours.size()) return false;
-    std::pmr::vector<uint32_t> blocks(world_.context_.memory);
+    std::pmr::vector<uint32_t> blocks(context_.memory);
     for (uint32_t i = 0; i < ours.size(); ++i)
         if (ours[i] != theirs[i]) blocks.push_back(i);
-    Snapshot part(world_.context_.memory);
+    Snapshot part(context_.memory);
     part.clock = saved.clock;
     ObjectSnapshot& object = part.objects.emplace_back(*findObject(saved, slot));
     components::Latch latch;
     const uint32_t window = recordsOf(saved, object, latch).window;
-    std::pmr::vector<std::byte> planes(world_.context_.memory);
+    std::pmr::vector<std::byte> planes(context_.memory);
     core::Writer writer(planes);
     writer.number(uint32_t(blocks.size()));
     for (const uint32_t block : blocks) writer.number(block);
-    const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, world_.context_.memory);
-    const ImageStore taken = copyTileBlocks(store, domain, grid, blocks, world_.context_.memory);
+    const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, context_.memory);
+    const ImageStore taken = copyTileBlocks(store, domain, grid, blocks, context_.memory);
     writeImage(imageOf(taken, object), stripe, uint32_t(saved.clock.tick), window, planes);
     object.planes = planes;
     writeSnapshot(part, out);
@@ -167,19 +177,19 @@ bool PersistenceSystem::writeBlocks(std::span<const std::byte> save, uint32_t sl
 void PersistenceSystem::mergeBlocks(std::span<const std::byte> save,
                                     std::span<const std::byte> theirs,
                                     std::pmr::vector<std::byte>& out) {
-    Snapshot part(world_.context_.memory), saved(world_.context_.memory);
+    Snapshot part(context_.memory), saved(context_.memory);
     readSnapshot(theirs, part);
-    ImageStore store(world_.context_.memory), taken(world_.context_.memory);
+    ImageStore store(context_.memory), taken(context_.memory);
     if (part.objects.size() != 1 || !readObject(save, part.objects[0].slot, saved, store) ||
         part.clock.tick != saved.clock.tick || !part.objects[0].touched)
         core::fail(FW_ERROR_BAD_DATA, "The tiles are of tick %llu and another state.",
                    static_cast<unsigned long long>(part.clock.tick));
     const ObjectSnapshot& from = part.objects[0];
-    const mesh::BurnDomain& domain = world_.scene_.domainOf(world_.scene_.objectAt(from.slot));
+    const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(from.slot));
     const BlockGrid grid = gridOf(domain);
     core::Reader reader(from.planes, "state");
     const uint32_t count = reader.count("blocks of tiles", sizeof(uint32_t));
-    std::pmr::vector<uint32_t> blocks(world_.context_.memory);
+    std::pmr::vector<uint32_t> blocks(context_.memory);
     for (uint32_t i = 0; i < count; ++i) {
         reader.number(blocks.emplace_back());
         if (blocks[i] >= grid.count() || (i > 0 && blocks[i] <= blocks[i - 1]))
@@ -192,17 +202,11 @@ void PersistenceSystem::mergeBlocks(std::span<const std::byte> save,
     components::Latch latch;
     const BurnRecords records = recordsOf(saved, object, latch);
     const auto tick = uint32_t(saved.clock.tick);
-    readImage(reader.take(reader.left()), stripeOf(domain, grid, blocks, world_.context_.memory),
-              tick, records.window, records.heatSpan(), taken);
-    eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t at, size_t to) {
-        store.ticks[to] = taken.ticks[at];
-        if (!store.heat.empty()) store.heat[to] = taken.heat[at];
-    });
-    eachCell(grid, blocks, 1, domain.tilesX, domain.tilesY, [&](size_t at, size_t to) {
-        store.tiles[to] = taken.tiles[at];
-        store.tileHeat[to] = taken.tileHeat[at];
-    });
-    std::pmr::vector<std::byte> planes(world_.context_.memory);
+    readImage(reader.take(reader.left()), stripeOf(domain, grid, blocks, context_.memory), tick,
+              records.window, records.heatSpan(), taken);
+    copyCells(taken, store, domain, grid, blocks,
+              [](size_t stripe, size_t map) { return std::pair(stripe, map); });
+    std::pmr::vector<std::byte> planes(context_.memory);
     writeImage(imageOf(store, object), domain, tick, records.window, planes);
     object.planes = planes;
     writeSnapshot(saved, out);

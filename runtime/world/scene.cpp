@@ -7,7 +7,7 @@
 #include "core/reserved.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
-#include "world/checks.h"
+#include "world/geometry.h"
 #include "world/material.h"
 #include "world/mesh_input.h"
 #include "world/shift.h"
@@ -57,6 +57,7 @@ Scene::Scene(const WorldContext& context)
       places(context.memory),
       touched(context.memory),
       playing(context.memory),
+      moved(context.memory),
       found(context.memory),
       context_(context),
       nearSlots_(context.memory),
@@ -77,9 +78,9 @@ FwMaterialId Scene::createMaterial(const FwMaterialDef& def) {
 }
 
 FwImageId Scene::createImage(const FwImageDef& def) {
-    checkFlags(def.flags, 0, "FwImageDef::flags");
-    checkLimit(def.width, "FwImageDef::width", 1, 8192);
-    checkLimit(def.height, "FwImageDef::height", 1, 8192);
+    components::checkFlags(def.flags, "FwImageDef::flags", 0);
+    components::checkWhole(def.width, "FwImageDef::width", 1, 8192);
+    components::checkWhole(def.height, "FwImageDef::height", 1, 8192);
     if (!def.pixels) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwImageDef::pixels is null.");
     checkValue(def.alphaCutoff, "FwImageDef::alphaCutoff", 0.0f, 1.0f);
     checkValue(def.reserved, "FwImageDef::reserved", 0.0f, 0.0f);
@@ -107,12 +108,17 @@ void Scene::destroyImage(FwImageId id) {
     const uint32_t slot = images.get(id).slot;
     context_.backend.destroyImage(slot);
     images.destroy(id);
+    FW_ASSERT(imageUsers_[slot] > 0, "image %u", slot);
     --imageUsers_[slot];  // not given out again while an object still names it
 }
 
 void Scene::countImages(const components::BurnableMesh& object, bool more) noexcept {
     for (const uint32_t plus1 : object.imagesPlus1)
-        if (plus1 != 0) imageUsers_[plus1 - 1] += more ? 1u : ~0u;
+        if (plus1 != 0) {
+            FW_ASSERT(plus1 <= imageUsers_.size() && (more || imageUsers_[plus1 - 1] > 0),
+                      "image %u", plus1 - 1);
+            imageUsers_[plus1 - 1] += more ? 1u : ~0u;
+        }
 }
 
 void Scene::countFuel(const Object& object, bool more) noexcept {
@@ -219,10 +225,7 @@ std::span<const uint8_t> Scene::goneOf(const FwBurnableMeshDef& def, MeshEntry& 
         any = true;
     }
     if (!any) return {};
-    const auto same = [](const FwImageId& a, const FwImageId& b) {
-        return a.index1 == b.index1 && a.generation == b.generation;
-    };
-    if (!mesh.gone || !std::equal(shown.begin(), shown.end(), mesh.gone->images.begin(), same)) {
+    if (!mesh.gone || !std::ranges::equal(shown, mesh.gone->images, same<FwImageId>)) {
         auto gone = core::Owned<GoneTexels>::make(context_.memory, context_.memory);
         gone->images = shown;
         gone->texels = components::makeCutOutMask(*mesh.domain, pictures, context_.memory);
@@ -307,8 +310,7 @@ uint32_t Scene::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
 
 void Scene::setHidden(FwBurnableMeshId id, bool hidden) {
     Object& object = *objects.get(id);
-    object.data.flags = (object.data.flags & ~uint32_t(FW_BURNABLE_HIDDEN)) |
-                        (hidden ? uint32_t(FW_BURNABLE_HIDDEN) : 0u);
+    setFlag(object.data.flags, FW_BURNABLE_HIDDEN, hidden);
     sendPose(object);
 }
 
@@ -319,6 +321,13 @@ void Scene::sendPose(const Object& object) noexcept {
                                    components::objectTint(object.data, domainOf(object)),
                                    components::objectFlags(object.data, domainOf(object)) |
                                        object.room1 << gpu::kObjectRoomShift);
+}
+
+void Scene::markMoved(Object& object) noexcept {
+    if (object.exchangeDue) return;
+    FW_ASSERT(moved.size() < moved.capacity(), "%zu objects moved", moved.size());
+    object.exchangeDue = true;
+    moved.push_back(object.slot);
 }
 
 void Scene::placeNow(const Object& object) {
@@ -357,6 +366,8 @@ std::span<const uint32_t> Scene::objectsNear(const mesh::Box& box, float margin)
     const double most = std::ceil(1000.0 * std::max(double(margin), 0.0)) + 2;
     places.each(box, uint32_t(std::min(most, 2 * kFarthest)),
                 [&](uint32_t slot) { nearSlots_.push_back(slot); });
+    FW_ASSERT(nearSlots_.size() <= objects.live(), "%zu of %u objects", nearSlots_.size(),
+              objects.live());
     std::sort(nearSlots_.begin(), nearSlots_.end());
     return nearSlots_;
 }
@@ -379,10 +390,12 @@ uint32_t Scene::nearTexel(const Object& object, const float point[3], float reac
 }
 
 const mesh::BurnDomain& Scene::domainOf(const Object& object) const noexcept {
+    FW_ASSERT(meshes.findSlot(object.data.meshSlot), "no mesh in slot %u", object.data.meshSlot);
     return *meshes.at(object.data.meshSlot)->domain;
 }
 
 uint32_t Scene::texelMaterial(const Object& object, uint32_t texel) const noexcept {
+    FW_ASSERT(texel < domainOf(object).texels.size(), "texel %u", texel);
     return domainOf(object).texels[texel].materialFlags & (gpu::kMaterialsPerObject - 1);
 }
 
@@ -394,15 +407,14 @@ void Scene::texelPosition(const Object& object, uint32_t texel, float (&out)[3])
 
 void Scene::texelPlace(const Object& object, uint32_t texel, float (&out)[3]) const noexcept {
     const mesh::BurnDomain& domain = domainOf(object);
-    const mesh::TexelPosition& p = domain.texels[texel];
-    const uint16_t units[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) out[i] = domain.origin[i] + domain.quantum * float(units[i]);
+    restPlace(domain, texel, out);
     if (!object.skinMoved || domain.triangleOf[texel] == mesh::kNone) return;
     float weights[3];
     mesh::texelWeights(domain, texel, weights);
     std::fill_n(out, 3, 0.0f);
     for (size_t k = 0; k < 3; ++k) {
         const uint32_t vertex = domain.indices[size_t(domain.triangleOf[texel]) * 3 + k];
+        FW_ASSERT(size_t(domain.sources[vertex]) * 3 + 2 < object.skin.size(), "vertex %u", vertex);
         const float* at = &object.skin[size_t(domain.sources[vertex]) * 3];
         for (int i = 0; i < 3; ++i) out[i] += weights[k] * at[i];
     }
@@ -416,9 +428,9 @@ uint32_t Scene::nearestTexel(const Object& object, const float point[3],
     float least = reach * reach;
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
         if (!domain.real(i)) continue;
-        float place[3], sum = 0;
+        float place[3];
         texelPlace(object, i, place);
-        for (int k = 0; k < 3; ++k) sum += (place[k] - point[k]) * (place[k] - point[k]);
+        const float sum = squaredDistance(place, point);
         if (sum > least || (sum == least && nearest != mesh::kNone)) continue;
         least = sum;
         nearest = i;
@@ -441,8 +453,8 @@ float Scene::powerOf(const Object& object) const noexcept {
 }
 
 void Scene::reserveSlots() {
+    for (auto* slots : {&nearSlots_, &moved}) core::growTo(*slots, objects.slotCount());
     core::growTo(touched, objects.slotCount());
-    core::growTo(nearSlots_, objects.slotCount());
 }
 
 void Scene::checkShift(const double (&by)[3]) const {
@@ -461,9 +473,12 @@ void Scene::shiftOrigin(const double (&by)[3]) noexcept {
 
 void Scene::forgetObject(const Object& object) noexcept {
     countImages(object.data, false);
+    FW_ASSERT(meshes.at(object.data.meshSlot)->users > 0 && texels >= object.texels, "mesh %u",
+              object.data.meshSlot);
     --meshes.at(object.data.meshSlot)->users;
     std::erase(touched, &object);
     std::erase(playing, &object);
+    if (object.exchangeDue) std::erase(moved, object.slot);
     places.remove(object.slot);
     texels -= object.texels;
     countFuel(object, false);

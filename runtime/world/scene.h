@@ -46,7 +46,10 @@ class Scene {
     void setHidden(FwBurnableMeshId id, bool hidden);
 
     // Of a slot that has one.
-    [[nodiscard]] Object& objectAt(uint32_t slot) const noexcept { return **objects.at(slot); }
+    [[nodiscard]] Object& objectAt(uint32_t slot) const noexcept {
+        FW_ASSERT(objects.findSlot(slot), "no burnable mesh in slot %u", slot);
+        return **objects.at(slot);
+    }
     [[nodiscard]] const mesh::BurnDomain& domainOf(const Object& object) const noexcept;
     [[nodiscard]] bool canBurn(const Object& object, uint32_t texel) const noexcept;
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
@@ -67,6 +70,7 @@ class Scene {
     std::span<const uint32_t> objectsNear(const mesh::Box& box, float margin) noexcept;
     std::span<const uint32_t> objectsNear(const float point[3], float margin) noexcept;
     void sendPose(const Object& object) noexcept;
+    void markMoved(Object& object) noexcept;  // capacity was reserved with each object
 
     // Slot of the mesh in this shape: itself, one that is there, or a new one.
     uint32_t shapedSlot(uint32_t slot, const float shape[3]);
@@ -93,6 +97,7 @@ class Scene {
     BoxGrid places;                     // of all objects, as their poses are now
     std::pmr::vector<Object*> touched;  // in slot order: idle objects cost a frame nothing
     std::pmr::vector<Object*> playing;  // baked burns, in slot order
+    std::pmr::vector<uint32_t> moved;   // slots to latch at the next exchange
     std::pmr::vector<uint32_t> found;   // scratch of ball queries
     uint64_t geometryVersion = 1;       // grows whenever what may stop a jet moves
     uint64_t texels = 0;                // of all objects, that can burn

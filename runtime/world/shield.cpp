@@ -2,7 +2,7 @@
 // they stand then. Backends find out whether such a cell is still there, so that no call has to
 // come in time.
 #include "world/exchange_system.h"
-#include "world/persistence.h"
+#include "world/recording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,15 +74,15 @@ void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def) {
 }
 
 void ExchangeSystem::adoptOcclusion(components::HeatOcclusion& made) noexcept {
-    state_.shield.grid.shape = made.shape;
-    state_.shield.grid.solid.swap(made.solid);
-    state_.shield.grid.baked.swap(made.baked);
+    shield_.grid.shape = made.shape;
+    shield_.grid.solid.swap(made.solid);
+    shield_.grid.baked.swap(made.baked);
     occlusionChanged();
 }
 
 // Jets end at the host's cells, too.
 void ExchangeSystem::occlusionChanged() noexcept {
-    state_.shield.unsent = state_.shield.unpacked = true;
+    shield_.unsent = shield_.unpacked = true;
     ++scene_.geometryVersion;
 }
 
@@ -91,42 +91,33 @@ void ExchangeSystem::occlusionChanged() noexcept {
 void ExchangeSystem::uploadOcclusion(const components::HeatOcclusion& made,
                                      std::span<const uint32_t> slots) noexcept {
     if (!context_.recorder.records()) return;
-    const bool stays = made.shape == state_.shield.grid.shape;
+    const bool stays = made.shape == shield_.grid.shape;
     if (!stays) context_.recorder.record(SetHeatShield{made.shape});
-    const auto words = uint32_t(made.solid.size());
-    for (uint32_t first = 0; first < words; first += SetShieldCells::kWords) {
-        SetShieldCells command{first};
-        bool differs = false;
-        for (uint32_t k = 0; k < command.kWords && first + k < words; ++k) {
-            command.words[k] = made.solid[first + k];
-            differs |= command.words[k] != (stays ? state_.shield.grid.solid[first + k] : 0);
-        }
-        if (differs) context_.recorder.record(command);
-    }
+    recordParts<SetShieldCells>(context_.recorder, made.solid, shield_.grid.solid, stays);
     for (size_t i = 0; i < slots.size(); ++i)
         context_.recorder.record(AddShieldObject{slots[i] + 1, i + 1 == slots.size()});
-    if (slots.empty() && stays && !state_.shield.grid.baked.empty())
+    if (slots.empty() && stays && !shield_.grid.baked.empty())
         context_.recorder.record(AddShieldObject{0, true});
 }
 
-void ExchangeSystem::applyShield(const SetHeatShield& command) {
+void ExchangeSystem::apply(const SetHeatShield& command) {
     context_.recorder.mayChange();
     components::HeatOcclusion made(context_.memory);
     made.shape = command.shape;
     made.solid.assign(made.shape.words(), 0);
     adoptOcclusion(made);
-    state_.shield.commandSlots.clear();
+    shield_.commandSlots.clear();
     context_.recorder.record(command);
 }
 
-void ExchangeSystem::applyShieldCells(const SetShieldCells& command) {
+void ExchangeSystem::apply(const SetShieldCells& command) {
     context_.recorder.mayChange();
-    components::HeatOcclusion& grid = state_.shield.grid;
+    components::HeatOcclusion& grid = shield_.grid;
     if (command.first >= grid.solid.size())
         core::fail(FW_ERROR_BAD_DATA, "A command is of word %u of the shield, which has %zu.",
                    command.first, grid.solid.size());
-    std::copy_n(command.words.begin(),
-                std::min<size_t>(command.kWords, grid.solid.size() - command.first),
+    std::copy_n(command.values.begin(),
+                std::min<size_t>(command.kCount, grid.solid.size() - command.first),
                 grid.solid.begin() + std::ptrdiff_t(command.first));
     if (const uint32_t over = grid.shape.cells() % 32; over != 0)
         grid.solid.back() &= (1u << over) - 1;
@@ -134,40 +125,40 @@ void ExchangeSystem::applyShieldCells(const SetShieldCells& command) {
     context_.recorder.record(command);
 }
 
-void ExchangeSystem::applyShieldObject(const AddShieldObject& command) {
+void ExchangeSystem::apply(const AddShieldObject& command) {
     context_.recorder.mayChange();
     if (command.object1 != 0) {
-        if (command.object1 > scene_.objects.slotCount() || !scene_.objects.at(command.object1 - 1))
+        if (!scene_.objects.findSlot(command.object1 - 1))
             core::fail(FW_ERROR_BAD_DATA, "A command shields by object %u, which is not there.",
                        command.object1);
-        if (state_.shield.commandSlots.size() >= scene_.objects.live())
+        if (shield_.commandSlots.size() >= scene_.objects.live())
             core::fail(FW_ERROR_BAD_DATA,
                        "Commands name more objects for one shield than the %u that there are.",
                        scene_.objects.live());
-        state_.shield.commandSlots.push_back(command.object1 - 1);
+        shield_.commandSlots.push_back(command.object1 - 1);
     }
     if (command.last) {
         std::pmr::vector<uint32_t> slots(context_.memory);
-        slots.swap(state_.shield.commandSlots);
-        bakeHeatOcclusion(state_.shield.grid.shape, slots, state_.shield.grid.baked);
-        state_.shield.unsent = state_.shield.unpacked = true;
+        slots.swap(shield_.commandSlots);
+        bakeHeatOcclusion(shield_.grid.shape, slots, shield_.grid.baked);
+        shield_.unsent = shield_.unpacked = true;
     }
     context_.recorder.record(command);
 }
 
 // The slot of a destroyed object may become another's.
 void ExchangeSystem::removeFromShield(uint32_t slot) noexcept {
-    std::erase(state_.shield.commandSlots, slot);
+    std::erase(shield_.commandSlots, slot);
     const size_t gone =
-        std::erase_if(state_.shield.grid.baked, [&](const components::OcclusionCell& cell) {
+        std::erase_if(shield_.grid.baked, [&](const components::OcclusionCell& cell) {
             return (cell.what & gpu::kOcclusionSlotMask) == slot;
         });
-    if (gone != 0) state_.shield.unsent = state_.shield.unpacked = true;
+    if (gone != 0) shield_.unsent = shield_.unpacked = true;
 }
 
 void ExchangeSystem::packHeatOcclusion() {
-    if (state_.shield.unpacked) components::packOcclusion(state_.shield.grid, state_.shield.words);
-    state_.shield.unpacked = false;
+    if (shield_.unpacked) components::packOcclusion(shield_.grid, shield_.words);
+    shield_.unpacked = false;
 }
 
 // For queries, which are answered at once while texels come some frames later: an object's cells
@@ -175,30 +166,30 @@ void ExchangeSystem::packHeatOcclusion() {
 components::OcclusionView ExchangeSystem::occlusionView() {
     components::OcclusionView view;
     packHeatOcclusion();
-    if (state_.shield.grid.shape.cells() == 0) return view;
-    state_.shield.fallen.assign(scene_.objects.slotCount(), 0);
+    if (shield_.grid.shape.cells() == 0) return view;
+    shield_.fallen.assign(scene_.objects.slotCount(), 0);
     for (const Object* object : scene_.touched) {  // nothing of the others has burnt
         const gpu::ObjectCounters& now = object->counters;
         const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
         const bool holes = !(object->data.flags & FW_BURNABLE_NO_HOLES);
-        state_.shield.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
+        shield_.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
     }
-    view.shape = state_.shield.grid.shape;
-    view.words = state_.shield.words;
-    view.fallen = state_.shield.fallen;
+    view.shape = shield_.grid.shape;
+    view.words = shield_.words;
+    view.fallen = shield_.fallen;
     return view;
 }
 
 // awake: the step will run.
 void ExchangeSystem::planOcclusion(gpu::StepPlan& step, bool awake) {
-    if (!awake || !state_.shield.unsent || frame_.occlusionSent) return;
+    if (!awake || !shield_.unsent || frame_.occlusionSent) return;
     packHeatOcclusion();
-    const components::OcclusionGridShape& shape = state_.shield.grid.shape;
-    state_.shield.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
-    state_.shield.update.cell = shape.cell;
-    state_.shield.update.counts = components::countsOf(shape);
-    state_.shield.update.words = state_.shield.words;
-    step.shield = &state_.shield.update;
+    const components::OcclusionGridShape& shape = shield_.grid.shape;
+    shield_.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
+    shield_.update.cell = shape.cell;
+    shield_.update.counts = components::countsOf(shape);
+    shield_.update.words = shield_.words;
+    step.shield = &shield_.update;
     frame_.occlusionSent = true;
 }
 

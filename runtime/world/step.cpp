@@ -97,7 +97,9 @@ uint32_t BurnSystem::substepShift() const noexcept {
     return shift;
 }
 
-void BurnSystem::plan(const ClockAdvance& time) {
+void BurnSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) {
+    const ClockAdvance& time = frame.time;
+    FW_ASSERT(time.steps <= kMaxSteps, "%u steps", time.steps);
     frame_.steps.clear();
     frame_.events.clear();
     frame_.updates.clear();
@@ -125,10 +127,10 @@ void BurnSystem::plan(const ClockAdvance& time) {
             std::span<const gpu::MaterialUpdate>(frame_.updates)
                 .subspan(firstUpdate[step], firstUpdate[step + 1] - firstUpdate[step]);
     }
-}
-
-// Nothing listed, nothing new: time passes without the device.
-void BurnSystem::fillPlan(gpu::FramePlan& plan) const noexcept {
+    FW_ASSERT(nextDue == frame_.due.size(), "%zu of %zu events", nextDue, frame_.due.size());
+    planBreaks(time.after.tick);
+    reserveStimuli();
+    // Nothing listed, nothing new: time passes without the device.
     const bool rests = state_.idle && rooms_.isSettled(rooms_.state().stirred) &&
                        frame_.events.empty() && frame_.updates.empty() && !keepsAwake();
     if (!rests) plan.steps = frame_.steps;
@@ -183,6 +185,7 @@ void BurnSystem::planGates(std::span<const Frame::Due> due, size_t firstEvent) {
     };
     for (size_t i = 0; i < due.size(); ++i) {
         const PendingTexel& event = due[i].event;
+        FW_ASSERT(event.gateCount <= event.gates.size(), "%u gates", event.gateCount);
         if (event.gateCount == 0) continue;
         uint32_t at = 0;
         for (size_t k = 0; k < std::min(count, kRecent) && at == 0; ++k)
@@ -211,7 +214,9 @@ void BurnSystem::touchLatched(uint64_t frameIndex) noexcept {
     const size_t touchedBefore = scene_.touched.size();
     for (const Frame::LatchOf& entry : frame_.latches) {
         Object& object = *entry.object;
-        if (object.touched) continue;  // capacity for every object was reserved at its creation
+        if (object.touched) continue;
+        FW_ASSERT(scene_.touched.size() < scene_.touched.capacity(), "%zu objects",
+                  scene_.touched.size());
         object.touched = true;
         Stimulus& stimulus = stimulusOf(object, frameIndex);
         stimulus.first = true;
@@ -246,24 +251,23 @@ void BurnSystem::stimulateDue(uint64_t frameIndex) noexcept {
     }
 }
 
-void BurnSystem::commit(uint64_t frameIndex, const ClockAdvance& time) noexcept {
-    touchLatched(frameIndex);
+void BurnSystem::commit(const HostFrame& frame) noexcept {
+    touchLatched(frame.index);
     exchange_.commit(frame_.spreadFound, frame_.waitersTouched);
-    stimulateDue(frameIndex);
-    commitPlays(frameIndex);
-    commitStimuli(time, frameIndex);
-    commitBreaks(frameIndex);
-    const uint64_t end = time.after.tick;
-    std::erase_if(state_.pending, [&](const PendingTexel& p) { return p.tick < end; });
+    stimulateDue(frame.index);
+    commitPlays(frame.index);
+    commitStimuli(frame);
+    commitBreaks(frame.index);
+    std::erase_if(state_.pending, [&](const PendingTexel& p) { return p.tick < frame.end(); });
     if (!frame_.events.empty()) {
         state_.idle = false;
-        state_.lastStimulus = end;
+        state_.lastStimulus = frame.end();
     }
-    if (time.dropped == 0) return;
-    state_.droppedSteps += time.dropped;
+    if (frame.time.dropped == 0) return;
+    state_.droppedSteps += frame.time.dropped;
     const float nowhere[3] = {};
-    context_.raise(FW_EVENT_TIME_DROPPED, nullptr, 0, frameIndex, nowhere,
-                   float(time.dropped) / 32.0f);
+    context_.raise(FW_EVENT_TIME_DROPPED, nullptr, 0, frame.index, nowhere,
+                   float(frame.time.dropped) / 32.0f);
 }
 
 // So that a warmed-up frame finds its capacity: one latch and update per object.

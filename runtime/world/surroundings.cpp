@@ -37,7 +37,7 @@ components::SurroundingAir QuerySystem::listSources() {
         sources_.push_back(source);
     };
     for (const FwLight& light : lights_.shown()) add(light);
-    for (auto [i, entry] : flames_.state().fires.entries()) {
+    for (auto [i, entry] : flames_.fires().entries()) {
         if (entry.data.state.flames == 0) continue;
         const components::VolumetricFire& fire = entry.data;
         components::FireSource source = components::fireSource(
@@ -45,7 +45,7 @@ components::SurroundingAir QuerySystem::listSources() {
         source.exact = true;
         sources_.push_back(source);
     }
-    for (auto [i, emitter] : emitters_.state().emitters.entries()) {
+    for (auto [i, emitter] : emitters_.emitters().entries()) {
         if (emitter.births.filled == 0 || emitter.def.shape == FW_EMITTER_MESH) continue;
         add(components::emitterLight(emitter, emitters_.airOf(emitter, 0), 0x40000000u | i,
                                      context_.lastFrame));

@@ -1,6 +1,6 @@
 // Keyframes are requested, kept and removed as frames go by. Seeking loads the last one before a
 // tick and applies the commands since, step by step.
-#include "world/timeline.h"
+#include "world/recording.h"
 
 #include "core/reserved.h"
 #include "world/save.h"
@@ -18,14 +18,6 @@ constexpr float kShortest = 1.0f / 32, kLongest = 3600;  // s between two keyfra
 uint64_t ticksOf(float seconds) noexcept {
     return uint64_t(std::llround(double(seconds) * 32)) * gpu::kStepTicks;
 }
-
-struct Seeking {
-    explicit Seeking(Timeline& given) : timeline(given) { timeline.seeks = true; }
-    ~Seeking() { timeline.seeks = false; }
-    Seeking(const Seeking&) = delete;
-    Seeking& operator=(const Seeking&) = delete;
-    Timeline& timeline;
-};
 
 }  // namespace
 
@@ -51,6 +43,8 @@ void Timeline::fit() noexcept {
         }
         keyframes.erase(keyframes.begin());
         const size_t before = keyframes.front().commands;  // nobody plays these any more
+        FW_ASSERT(before <= commands.entries.size(), "%zu of %zu commands", before,
+                  commands.entries.size());
         commands.entries.erase(commands.entries.begin(),
                                commands.entries.begin() + ptrdiff_t(before));
         for (Keyframe& keyframe : keyframes) keyframe.commands -= before;
@@ -63,6 +57,14 @@ void Timeline::forget(uint64_t now) noexcept {
     std::erase_if(keyframes, [&](const Keyframe& keyframe) { return keyframe.tick > now; });
     commands.entries.resize(std::min(applied, commands.entries.size()));
     end = now;
+}
+
+void Timeline::record(const Command& command, uint64_t now) noexcept {
+    if (seeks) return;
+    if (now < end) forget(now);
+    commands.push({now, false, command});
+    applied = commands.entries.size();
+    fit();
 }
 
 void Timeline::restart(uint64_t now) noexcept {
@@ -86,25 +88,25 @@ void PersistenceSystem::startTimeline(const FwTimelineDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwTimelineDef::bytes is %llu; at least %llu.",
                    static_cast<unsigned long long>(def.bytes),
                    static_cast<unsigned long long>(kMinTimeline));
-    auto timeline = core::Owned<Timeline>::make(world_.context_.memory, world_.context_.memory);
+    auto timeline = core::Owned<Timeline>::make(context_.memory, context_.memory);
     timeline->apart = ticksOf(def.interval);
     timeline->farthest = std::max(ticksOf(def.maxInterval), timeline->apart);
     timeline->most = def.bytes;
-    timeline->restart(world_.context_.clock.tick);
+    timeline->restart(context_.clock.tick);
     requestSave(SaveFor::timeline);
     saves_[size_t(SaveFor::timeline)]->pending = false;  // of one that was kept before
-    timeline_ = std::move(timeline);
+    recorder_.timeline = std::move(timeline);
 }
 
 void PersistenceSystem::stopTimeline() noexcept {
-    timeline_ = {};
+    recorder_.timeline = {};
     saves_[size_t(SaveFor::timeline)] = {};
 }
 
 // Before a frame's plan. Nothing is kept of what burnt before.
 void PersistenceSystem::planTimeline(uint64_t after) noexcept {
-    if (!timeline_) return;
-    const Timeline& timeline = *timeline_;
+    if (!recorder_.timeline) return;
+    const Timeline& timeline = *recorder_.timeline;
     const core::Owned<Save>& save = saves_[size_t(SaveFor::timeline)];
     if (!save || save->requested || save->pending || after < timeline.end) return;
     if (!timeline.keyframes.empty() && after < timeline.keyframes.back().tick + timeline.apart)
@@ -116,56 +118,43 @@ void PersistenceSystem::planTimeline(uint64_t after) noexcept {
 
 // After a frame from `before` to the present.
 void PersistenceSystem::commitTimeline(uint64_t before) noexcept {
-    if (!timeline_) return;
-    Timeline& timeline = *timeline_;
-    if (world_.context_.clock.tick == before) return;
-    if (before < timeline.end && world_.context_.clock.tick > timeline.granted)
-        timeline.forget(before);
-    timeline.end = std::max(timeline.end, world_.context_.clock.tick);
+    if (!recorder_.timeline) return;
+    Timeline& timeline = *recorder_.timeline;
+    if (context_.clock.tick == before) return;
+    if (before < timeline.end && context_.clock.tick > timeline.granted) timeline.forget(before);
+    timeline.end = std::max(timeline.end, context_.clock.tick);
 }
 
 void PersistenceSystem::keepKeyframe() noexcept {
-    if (!timeline_ || !saves_[size_t(SaveFor::timeline)]->ready) return;
+    if (!recorder_.timeline || !saves_[size_t(SaveFor::timeline)]->ready) return;
     Save& save = *saves_[size_t(SaveFor::timeline)];
     save.ready = false;
-    Timeline& timeline = *timeline_;
+    Timeline& timeline = *recorder_.timeline;
     try {
         timeline.keyframes.push_back(
             {save.snapshot.clock.tick, timeline.captured,
-             std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(),
-                                         world_.context_.memory)});
+             std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(), context_.memory)});
     } catch (...) {  // a later keyframe does
         return;
     }
     timeline.fit();
 }
 
-// A command in the past makes another future.
-void PersistenceSystem::recordInTimeline(const Command& command) noexcept {
-    if (!timeline_ || timeline_->seeks) return;
-    Timeline& timeline = *timeline_;
-    if (world_.context_.clock.tick < timeline.end) timeline.forget(world_.context_.clock.tick);
-    timeline.commands.push({world_.context_.clock.tick, false, command});
-    timeline.applied = timeline.commands.entries.size();
-    timeline.fit();
-}
-
 bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
     seconds = 0;
-    if (!timeline_)
+    if (!recorder_.timeline)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The world keeps no timeline; fwWorld_StartTimeline first.");
-    mayChange();
+    recorder_.mayChange();
     if (const uint32_t object1 = explainUnsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Burnable mesh %u burns by an extension; such fires cannot be sought.", object1);
-    Timeline& timeline = *timeline_;
+    Timeline& timeline = *recorder_.timeline;
     if (timeline.commands.lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the timeline was kept; it has a gap.");
     const uint64_t until = untilTick - untilTick % gpu::kStepTicks;
-    if (timeline.keyframes.empty() && until <= timeline.end)
-        return until == world_.context_.clock.tick;
+    if (timeline.keyframes.empty() && until <= timeline.end) return until == context_.clock.tick;
     if (timeline.keyframes.empty() || until < timeline.keyframes.front().tick ||
         until > timeline.end)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "untilTick is %llu; the timeline has %llu to %llu.",
@@ -173,32 +162,21 @@ bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
                    static_cast<unsigned long long>(
                        timeline.keyframes.empty() ? timeline.end : timeline.keyframes.front().tick),
                    static_cast<unsigned long long>(timeline.end));
-    const Seeking seeking(timeline);
+    const Raised seeking(&timeline.seeks);
     auto from = std::upper_bound(timeline.keyframes.begin(), timeline.keyframes.end(), until,
                                  [](uint64_t tick, const Keyframe& m) { return tick < m.tick; });
     --from;
-    if (until < world_.context_.clock.tick || from->tick > world_.context_.clock.tick) {
+    if (until < context_.clock.tick || from->tick > context_.clock.tick) {
         load(from->save);
         timeline.applied = from->commands;
     }
     const auto& entries = timeline.commands.entries;
-    const bool present = world_.context_.clock.tick == timeline.end;
-    if (world_.context_.clock.tick < until || present) {
-        for (; timeline.applied < entries.size() &&
-               entries[timeline.applied].tick <= world_.context_.clock.tick;
-             ++timeline.applied) {
-            try {
-                apply(entries[timeline.applied].command);
-            } catch (const core::Error& error) {
-                world_.context_.log.write(
-                    FW_LOG_WARNING, "A command of the timeline at tick %llu is refused: %s",
-                    static_cast<unsigned long long>(world_.context_.clock.tick), error.message);
-            }
-        }
-    }
-    if (world_.context_.clock.tick >= until) return true;
-    uint64_t next = std::min(
-        until, world_.context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
+    const bool present = context_.clock.tick == timeline.end;
+    if (context_.clock.tick < until || present)
+        timeline.applied += applyUntilNow(std::span(entries).subspan(timeline.applied), "timeline");
+    if (context_.clock.tick >= until) return true;
+    uint64_t next =
+        std::min(until, context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
     if (timeline.applied < entries.size()) next = std::min(next, entries[timeline.applied].tick);
     timeline.granted = next;
     seconds = secondsUpTo(next);
@@ -206,8 +184,8 @@ bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
 }
 
 void PersistenceSystem::timelineState(FwTimelineState& state) {
-    if (!timeline_) return;
-    const Timeline& timeline = *timeline_;
+    if (!recorder_.timeline) return;
+    const Timeline& timeline = *recorder_.timeline;
     state.keyframes = uint32_t(timeline.keyframes.size());
     state.firstTick = timeline.keyframes.empty() ? timeline.end : timeline.keyframes.front().tick;
     state.endTick = timeline.end;

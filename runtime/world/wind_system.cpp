@@ -2,9 +2,8 @@
 
 #include "host_limits.h"
 #include "shared/wind.h"
-#include "world/exchange_system.h"
-#include "world/field_system.h"
-#include "world/persistence.h"
+#include "world/geometry.h"
+#include "world/recording.h"
 #include "world/shift.h"
 
 #include <algorithm>
@@ -35,9 +34,8 @@ WindVector windOf(const Winds& winds, const WindPlace& place, uint64_t tick) noe
         place);
 }
 
-WindSystem::WindSystem(const WorldContext& context, Scene& scene, ExchangeSystem& exchange,
-                       FieldSystem& fields)
-    : context_(context), scene_(scene), exchange_(exchange), fields_(fields) {
+WindSystem::WindSystem(const WorldContext& context, Scene& scene)
+    : context_(context), scene_(scene) {
     std::copy_n(context.def.wind, 3, state_.wind);
 }
 
@@ -75,7 +73,7 @@ void WindSystem::atPoint(const float point[3], float wind[3]) const {
 WindPlace windPlaceOf(const components::Pose& pose, const mesh::BurnDomain& domain) noexcept {
     float middle[3];
     double place[3];
-    for (int i = 0; i < 3; ++i) middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
+    middleOf(domain, middle);
     components::toWorld(pose, middle, place);
     return components::windPlace(place);
 }
@@ -98,7 +96,8 @@ uint32_t WindSystem::localWindOf(const Object& object, uint64_t tick) const noex
 }
 
 void WindSystem::sortZones() noexcept {
-    state_.ordered.clear();  // capacity was reserved at their creation
+    FW_ASSERT(state_.zones.live() <= state_.ordered.capacity(), "%u zones", state_.zones.live());
+    state_.ordered.clear();
     for (auto [i, zone] : state_.zones.entries()) state_.ordered.push_back(zone);
     components::sortWindZones(state_.ordered);
     ++state_.changes;
@@ -111,7 +110,7 @@ void WindSystem::updateObjectsIn(const WindZone& zone) noexcept {
         return;
     }
     state_.gustsShown = context_.clock.tick;
-    fields_.sendRules();
+    ++state_.updates;
     const int64_t reach = zone.size[0] + zone.size[1] + zone.size[2] + 1;  // whatever its shape
     for (const uint32_t slot : scene_.objectsNear(cubeAround(zone.middle, reach), 0))
         updateObject(scene_.objectAt(slot));
@@ -120,7 +119,7 @@ void WindSystem::updateObjectsIn(const WindZone& zone) noexcept {
 void WindSystem::updateObjects() noexcept {
     state_.due = false;
     state_.gustsShown = context_.clock.tick;
-    fields_.sendRules();
+    ++state_.updates;
     if (isUniform() && !state_.kept) return;
     state_.kept = !isUniform();
     for (auto [slot, owned] : scene_.objects.entries()) updateObject(owned);
@@ -135,13 +134,11 @@ void WindSystem::updateObject(Object& object) noexcept {
     state_.kept |= wind != 0;
     object.zoneWind = wind;
     context_.backend.setObjectWind(object.slot, wind);
-    exchange_.markMoved(object);
+    scene_.markMoved(object);
 }
 
 FwWindZoneId WindSystem::createZone(const FwWindZoneDef& def) {
-    if (state_.zones.live() >= limits::kWindZones)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u wind zones are there; the limit is %u.",
-                   state_.zones.live(), limits::kWindZones);
+    checkRoom(state_.zones, limits::kWindZones, "wind zones");
     const WindZone zone = components::makeWindZone(def);
     state_.ordered.reserve(state_.zones.live() + 1);
     const FwWindZoneId id = state_.zones.create(zone);
@@ -162,20 +159,21 @@ void WindSystem::setZone(FwWindZoneId id, const WindZone& made) {
     context_.recorder.record(SetWindZone{id.index1 - 1, made});
 }
 
-// Before a frame: parts of a grid may have come one by one, and gusts go on.
-void WindSystem::prepare() noexcept {
+// Parts of a grid may have come one by one, and gusts go on.
+void WindSystem::plan(gpu::FramePlan& plan) noexcept {
     constexpr uint64_t kQuarter = fire::kWindLatchTicks;
     if (state_.due ||
         (hasGusts() && context_.clock.tick / kQuarter != state_.gustsShown / kQuarter))
         updateObjects();
+    std::copy_n(state_.wind, 3, plan.wind);
 }
 
 void WindSystem::setGusts(const FwGustDef& def) {
     const components::Gusts gusts = components::makeGusts(def, state_.gusts);
-    applyGusts({gusts.strength, gusts.size});
+    apply(SetGusts{gusts.strength, gusts.size});
 }
 
-void WindSystem::applyGusts(const SetGusts& command) {
+void WindSystem::apply(const SetGusts& command) {
     context_.recorder.mayChange();
     components::Gusts gusts = state_.gusts;
     gusts.strength = command.strength;
@@ -198,23 +196,14 @@ void WindSystem::setGrid(const FwWindGridDef& def) {
     }
     const bool stays = grid.shape == state_.grid.shape;
     if (!stays) context_.recorder.record(SetWindGrid{grid.shape});
-    for (uint32_t first = 0; first < grid.points.size(); first += SetWindPoints::kPoints) {
-        SetWindPoints command{first};
-        bool differs = false;
-        for (uint32_t k = 0; k < command.kPoints && first + k < grid.points.size(); ++k) {
-            command.points[k] = grid.points[first + k];
-            differs |= command.points[k] !=
-                       (stays ? state_.grid.points[first + k] : components::WindPoint{});
-        }
-        if (differs) context_.recorder.record(command);
-    }
+    recordParts<SetWindPoints>(context_.recorder, grid.points, state_.grid.points, stays);
     state_.grid.shape = grid.shape;
     state_.grid.points.swap(grid.points);
     ++state_.changes;
     updateObjects();
 }
 
-void WindSystem::applyGrid(const SetWindGrid& command) {
+void WindSystem::apply(const SetWindGrid& command) {
     context_.recorder.mayChange();
     std::pmr::vector<components::WindPoint> calm(command.shape.points(), context_.memory);
     state_.grid.points.swap(calm);
@@ -224,13 +213,13 @@ void WindSystem::applyGrid(const SetWindGrid& command) {
     context_.recorder.record(command);
 }
 
-void WindSystem::applyPoints(const SetWindPoints& command) {
+void WindSystem::apply(const SetWindPoints& command) {
     context_.recorder.mayChange();
     const size_t points = state_.grid.points.size();
     if (command.first >= points)
         core::fail(FW_ERROR_BAD_DATA, "A command is of point %u of the wind grid, which has %zu.",
                    command.first, points);
-    std::copy_n(command.points.begin(), std::min<size_t>(command.kPoints, points - command.first),
+    std::copy_n(command.values.begin(), std::min<size_t>(command.kCount, points - command.first),
                 state_.grid.points.begin() + std::ptrdiff_t(command.first));
     ++state_.changes;
     state_.due = true;
@@ -255,6 +244,24 @@ void WindSystem::set(const float wind[3]) {
 }
 
 void WindSystem::addObject(const Object& object) noexcept { state_.kept |= object.zoneWind != 0; }
+
+void WindSystem::capture(WindSnapshot& to) const {
+    static_cast<WindFields&>(to) = state_;
+    captureSlots(state_.zones, to.zones);
+}
+
+void WindSystem::restore(WindSnapshot& from) noexcept {
+    std::copy_n(from.wind, 3, state_.wind);
+    state_.grid.shape = from.grid.shape;
+    state_.grid.points.swap(from.grid.points);
+    state_.gusts = from.gusts;
+    for (const auto& zone : from.zones) *state_.zones.at(zone.slot) = zone;
+    sortZones();
+    state_.kept = true;  // objects find theirs, one by one
+    updateObjects();
+    state_.gustsShown = from.gustsShown;
+    ++state_.changes;
+}
 
 void WindSystem::checkShift(const double (&by)[3]) const {
     for (auto [i, zone] : state_.zones.entries()) checkMillimetres(zone.middle, by, "wind zone", i);

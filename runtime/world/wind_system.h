@@ -6,13 +6,11 @@
 #include "components/wind_zone.h"
 #include "world/command.h"
 #include "world/scene.h"
+#include "world/slotted.h"
 
 #include <array>
 
 namespace fw::world {
-
-class ExchangeSystem;
-class FieldSystem;
 
 // All that blows.
 struct Winds {
@@ -28,24 +26,50 @@ struct Winds {
 [[nodiscard]] components::WindPlace windPlaceOf(const components::Pose& pose,
                                                 const mesh::BurnDomain& domain) noexcept;
 
-struct WindState {
-    explicit WindState(std::pmr::memory_resource* memory)
-        : zones("Wind zone", memory), ordered(memory), grid(memory) {}
-    float wind[3] = {};  // m/s, everywhere
-    core::HandlePool<FwWindZoneId, components::WindZone> zones;
-    std::pmr::vector<components::WindZone> ordered;  // `zones` in the order in which they count
+struct WindFields {  // that a save has
+    explicit WindFields(std::pmr::memory_resource* memory) : grid(memory) {}
+    float wind[3] = {};       // m/s, everywhere
+    uint64_t gustsShown = 0;  // tick of the gusts that objects keep
     components::WindGrid grid;
     components::Gusts gusts;
-    bool due = false;         // what objects keep of the wind is to be found again
-    bool kept = false;        // some may keep another than the world's own
-    uint64_t gustsShown = 0;  // tick of the gusts that objects keep
+
+    template <class A>
+    void serialize(A& a) {
+        a(wind, gustsShown, grid, gusts);
+        a.range("wind", wind, -double(fire::kMaxWind), double(fire::kMaxWind));
+    }
+};
+
+struct WindSnapshot : WindFields {
+    explicit WindSnapshot(std::pmr::memory_resource* memory)
+        : WindFields(memory), zones(memory), ordered(memory) {}
+    SlottedList<components::WindZone> zones;
+    std::pmr::vector<components::WindZone> ordered;  // in the order in which they count
+
+    template <class A>
+    void serialize(A& a) {
+        WindFields::serialize(a);
+        a.list("wind zones", zones, 108);
+        if constexpr (!A::kReads) return;
+        ordered.assign(zones.begin(), zones.end());
+        components::sortWindZones(ordered);
+    }
+};
+
+struct WindState : WindFields {
+    explicit WindState(std::pmr::memory_resource* memory)
+        : WindFields(memory), zones("Wind zone", memory), ordered(memory) {}
+    core::HandlePool<FwWindZoneId, components::WindZone> zones;
+    std::pmr::vector<components::WindZone> ordered;  // `zones` in the order in which they count
+    bool due = false;   // what objects keep of the wind is to be found again
+    bool kept = false;  // some may keep another than the world's own
     uint64_t changes = 0;
+    uint64_t updates = 0;  // grows whenever a place may have another wind than before
 };
 
 class WindSystem {
  public:
-    WindSystem(const WorldContext& context, Scene& scene, ExchangeSystem& exchange,
-               FieldSystem& fields);
+    WindSystem(const WorldContext& context, Scene& scene);
 
     void set(const float wind[3]);
     void setGrid(const FwWindGridDef& def);  // of structSize 0: removes the grid
@@ -58,8 +82,7 @@ class WindSystem {
     void destroyZone(FwWindZoneId id);
     void atPoint(const float point[3], float wind[3]) const;
 
-    // Before a frame is planned.
-    void prepare() noexcept;
+    void plan(gpu::FramePlan& plan) noexcept;      // first of all
     void checkShift(const double (&by)[3]) const;  // throws
     void shiftOrigin(const double (&by)[3]) noexcept;
 
@@ -77,22 +100,25 @@ class WindSystem {
     [[nodiscard]] uint32_t localWindOf(const Object& object, uint64_t tick) const noexcept;
     void updateObject(Object& object) noexcept;  // that moved
     void addObject(const Object& object) noexcept;
+    void apply(const SetWind& command) { set(command.wind); }
+    void apply(const SetWindZone& command) {
+        setZone(state_.zones.findId(command.slot), command.zone);
+    }
+    void apply(const SetWindGrid& command);
+    void apply(const SetWindPoints& command);
+    void apply(const SetGusts& command);
+    void capture(WindSnapshot& to) const;
+    void restore(WindSnapshot& from) noexcept;  // before objects are
 
  private:
-    friend class PersistenceSystem;
     [[nodiscard]] Winds view() const noexcept;
     [[nodiscard]] bool isUniform() const noexcept;  // the world's own wind blows everywhere
     void sortZones() noexcept;
-    void applyGrid(const SetWindGrid& command);
-    void applyPoints(const SetWindPoints& command);
-    void applyGusts(const SetGusts& command);
     void updateObjects() noexcept;
     void updateObjectsIn(const components::WindZone& zone) noexcept;
 
     const WorldContext& context_;
     Scene& scene_;
-    ExchangeSystem& exchange_;
-    FieldSystem& fields_;
     WindState state_{context_.memory};
 };
 

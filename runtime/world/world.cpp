@@ -6,7 +6,6 @@
 #include "core/reserved.h"
 #include "flamewright/flamewright_debug.h"
 #include "host_limits.h"
-#include "world/checks.h"
 #include "world/material.h"
 #include "world/shift.h"
 
@@ -19,12 +18,13 @@ namespace {
 using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
+using components::checkWhole;
 
 constexpr double kFarthestOrigin = 1e9;  // m that all places may move in all
 
 FwWorldDef checkedDef(const FwWorldDef& given) {
     FwWorldDef def = given;
-    checkFlags(def.flags, kWorldFlags, "FwWorldDef::flags");
+    components::checkFlags(def.flags, "FwWorldDef::flags", kWorldFlags);
     checkValue(def.spreadChance, "FwWorldDef::spreadChance", 0.0f, 1.0f);
     checkValue(def.timeToLive, "FwWorldDef::timeToLive", 0.0f, 1e6f);
     checkValues(def.up, 3, "FwWorldDef::up", -1.001f, 1.001f);
@@ -37,19 +37,19 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     for (float& value : def.up) value /= length;
     checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
     checkLengths(def.wind, 3, "FwWorldDef::wind", -fire::kMaxWind, fire::kMaxWind);
-    checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
-    checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
-    checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, limits::kLights);
-    checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
-    checkLimit(def.volumePixelSize, "FwWorldDef::volumePixelSize", 1, 16);
-    checkLimit(def.rayStepCount, "FwWorldDef::rayStepCount", 6, 64);
-    checkLimit(def.volumeOctaves, "FwWorldDef::volumeOctaves", 1, gpu::kFlameOctaves);
-    checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
-    checkLimit(def.reserved2, "FwWorldDef::reserved2", 0, 0);
-    checkLimit(def.reserved3, "FwWorldDef::reserved3", 0, 0);
-    checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
-    checkLimit(def.maxParticles, "FwWorldDef::maxParticles", 0, 1u << 20);
-    checkLimit(def.arrivalTiles, "FwWorldDef::arrivalTiles", 1, 1u << 20);
+    checkWhole(def.reserved, "FwWorldDef::reserved", 0, 0);
+    checkWhole(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
+    checkWhole(def.maxLights, "FwWorldDef::maxLights", 0, limits::kLights);
+    checkWhole(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
+    checkWhole(def.volumePixelSize, "FwWorldDef::volumePixelSize", 1, 16);
+    checkWhole(def.rayStepCount, "FwWorldDef::rayStepCount", 6, 64);
+    checkWhole(def.volumeOctaves, "FwWorldDef::volumeOctaves", 1, gpu::kFlameOctaves);
+    checkWhole(def.reserved1, "FwWorldDef::reserved1", 0, 0);
+    checkWhole(def.reserved2, "FwWorldDef::reserved2", 0, 0);
+    checkWhole(def.reserved3, "FwWorldDef::reserved3", 0, 0);
+    checkWhole(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
+    checkWhole(def.maxParticles, "FwWorldDef::maxParticles", 0, 1u << 20);
+    checkWhole(def.arrivalTiles, "FwWorldDef::arrivalTiles", 1, 1u << 20);
     return def;
 }
 
@@ -68,16 +68,17 @@ struct World::ObjectRecords {
 World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
              std::pmr::memory_resource* memory)
     : events_(memory),
-      context_{memory, backend, log, checkedDef(def), events_, persistence_, {}, {}},
+      context_{memory, backend, log, checkedDef(def), events_, recorder_, {}, {}},
+      recorder_(context_.clock),
       scene_(context_),
-      wind_(context_, scene_, exchange_, fields_),
+      wind_(context_, scene_),
       rooms_(context_, scene_),
       fields_(context_, scene_, wind_, burn_),
       flames_(context_, scene_, wind_, exchange_, burn_),
-      emitters_(context_, scene_, wind_, exchange_, flames_, queries_, burn_),
+      emitters_(context_, scene_, wind_, exchange_, flames_, burn_),
       lights_(context_, scene_, flames_, emitters_),
       exchange_(context_, scene_, wind_),
-      burn_(context_, scene_, wind_, rooms_, exchange_, emitters_, queries_),
+      burn_(context_, scene_, wind_, rooms_, exchange_),
       queries_(context_, scene_, wind_, exchange_, flames_, emitters_, lights_, burn_),
       budget_(context_),
       persistence_(*this) {
@@ -89,7 +90,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
 FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
     (void)scene_.meshes.get(given.mesh);
     const FwBurnableMeshDef def =
-        components::applyWorldFlags(given, exchange_.state().book.objectFlags);
+        components::applyWorldFlags(given, exchange_.transfer().objectFlags);
     core::Owned<Object> owned = core::Owned<Object>::make(context_.memory, context_.memory);
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
@@ -189,18 +190,15 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     checkValue(def.spreadChance, "FwBurnableMeshDef::spreadChance", 0.0f, 1.0f);
     checkValue(def.timeToLive, "FwBurnableMeshDef::timeToLive", 0.0f, 1e6f);
     object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
-    object.exchangeDue = true;
     object.firstFrame = context_.lastFrame + 1;
     object.breaks = burn_.makeBreaks(def, mesh, gone);
     const FwBurnableMeshId id = scene_.objects.create(std::move(owned));
     object.id = id;
     object.slot = id.index1 - 1;
     try {
-        scene_.reserveSlots();
-        burn_.reserveSlots();
-        queries_.reserveSlots();
-        exchange_.reserveSlots();
-        emitters_.reserveSlots(scene_.objects.slotCount());
+        eachSystem([](auto& system) {
+            if constexpr (requires { system.reserveSlots(); }) system.reserveSlots();
+        });
         scene_.placeNow(object);
         context_.backend.createObject(object.slot, made.init);
     } catch (...) {
@@ -210,6 +208,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     }
     object.latch.sent = true;  // it was created with these records
     ++mesh.users;
+    scene_.markMoved(object);
     exchange_.addObject(object);
     wind_.addObject(object);
     scene_.texels += burnable;
@@ -229,12 +228,9 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     ++scene_.geometryVersion;
     const uint32_t slot = object.slot;
     const uint32_t meshSlot = object.data.meshSlot;
-    burn_.forgetObject(object);
-    emitters_.forgetObject(id, slot);
-    queries_.forgetObject(object);
-    exchange_.forgetObject(object);
-    flames_.forgetObject(id);
-    scene_.forgetObject(object);
+    eachSystem([&](auto& system) {
+        if constexpr (requires { system.forgetObject(object); }) system.forgetObject(object);
+    });
     memoryCounts_.objects -= object.memoryBytes;
     context_.backend.destroyObject(slot);
     scene_.objects.destroy(id);
@@ -242,7 +238,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
 }
 
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
-    persistence_.mayChange();
+    recorder_.mayChange();
     Object& object = *scene_.objects.get(id);
     scene_.places.reserveMoves(1);
     const components::Pose before = object.data.pose;
@@ -253,14 +249,14 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
         ++scene_.geometryVersion;
         ++object.changes;
     }
-    exchange_.markMoved(object);
+    scene_.markMoved(object);
     wind_.updateObject(object);
     if (const uint32_t room1 = rooms_.roomOf(object); room1 != object.room1) {
         object.room1 = room1;
         rooms_.stir();
     }
     scene_.sendPose(object);
-    persistence_.record(SetPose{object.slot, Transform(transform)});
+    recorder_.record(SetPose{{object.slot, Transform(transform)}});
 }
 
 void World::setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
@@ -306,48 +302,49 @@ void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
     persistence_.checkFrame(deltaTime);
 }
 
+uint32_t World::ignite(const FwIgnitionDef& def, bool* acts) {
+    const uint32_t texels = burn_.ignite(def, acts);
+    emitters_.wetPatches(burn_.splashes(), true);
+    return texels;
+}
+
 void World::advance(uint64_t frameIndex, float deltaTime) {
     checkFrame(frameIndex, deltaTime);
     collectReadbacks();
-    wind_.prepare();
-    const ClockAdvance time =
-        fw::world::advance(context_.clock, deltaTime, context_.def.maxStepsPerFrame);
+    const HostFrame frame{
+        frameIndex, deltaTime, context_.clock.tick,
+        fw::world::advance(context_.clock, deltaTime, context_.def.maxStepsPerFrame)};
     gpu::FramePlan plan;
-    plan.frameIndex = frameIndex;
-    this->plan(time, deltaTime, plan);
+    this->plan(frame, plan);
     context_.backend.run(plan);
-    commit(frameIndex, time, deltaTime);
+    commit(frame);
     collect();
     queries_.runForecasts();
 }
 
 // If it throws, the world is as it was.
-void World::plan(const ClockAdvance& time, float deltaTime, gpu::FramePlan& plan) {
-    const uint64_t end = time.after.tick;
-    const size_t waiting = burn_.pendingCount();
+void World::plan(const HostFrame& frame, gpu::FramePlan& plan) {
+    plan.frameIndex = frame.index;
+    plan.switches = context_.switches;
+    plan.endTick = uint32_t(frame.end());
+    plan.tickFraction = float(double(frame.time.after.fraction) / double(Clock::kStepUnits));
+    wind_.plan(plan);
     emitters_.beginFrame();
+    const size_t waiting = burn_.pendingCount();
     try {
-        actOnObjects(end);
-        burn_.plan(time);
-        queries_.plan();
-        persistence_.plan(time);
-        burn_.planBreaks(end);
-        burn_.reserveStimuli();
+        actOnObjects(frame.end());
+        burn_.plan(frame, plan);
+        persistence_.plan(frame, plan);
+        emitters_.listProbes();
+        queries_.plan({persistence_.hashed(), burn_.searched()}, plan);
     } catch (...) {
         burn_.dropPending(waiting);
         throw;
     }
-    flames_.plan(deltaTime, plan);
-    emitters_.plan(deltaTime, plan);
-    fields_.plan(time, plan);
-    burn_.fillPlan(plan);
-    queries_.fillPlan(plan);
-    persistence_.fillPlan(plan);
+    flames_.plan(frame, plan);
+    emitters_.plan(frame, plan);
+    fields_.plan(frame, plan);
     budget_.plan(plan);
-    plan.switches = context_.switches;
-    plan.endTick = uint32_t(end);
-    plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
-    std::copy_n(wind_.state().wind, 3, plan.wind);
 }
 
 // A frame that fails leaves times of contact behind that the next one finds, no more.
@@ -358,27 +355,27 @@ void World::actOnObjects(uint64_t end) {
     for (uint64_t now = first; now < end; now += gpu::kExchangeTicks) {
         flames_.igniteObjects(uint32_t(now));
         emitters_.heatObjects(uint32_t(now));
+        burn_.clearSplashes();
         fields_.wetObjects(uint32_t(now));
+        emitters_.wetPatches(burn_.splashes(), false);
     }
 }
 
-void World::commit(uint64_t frameIndex, const ClockAdvance& time, float deltaTime) {
-    burn_.commit(frameIndex, time);
-    queries_.commit(frameIndex);
+void World::commit(const HostFrame& frame) {
+    burn_.commit(frame);
+    queries_.commit(frame);
     flames_.commit();
-    fields_.commit(time.after.tick);
-    const uint64_t before = context_.clock.tick;
-    if (before < Clock::kWarnTick && time.after.tick >= Clock::kWarnTick)
+    fields_.commit(frame);
+    if (frame.begin < Clock::kWarnTick && frame.end() >= Clock::kWarnTick)
         context_.log.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
                            static_cast<unsigned long long>(Clock::kLastTick / 4096));
-    context_.clock = time.after;
-    context_.lastFrame = frameIndex;
+    context_.clock = frame.time.after;
+    context_.lastFrame = frame.index;
     ++context_.frames;
-    persistence_.commitTimeline(before);
     countMemory();
-    emitters_.commit(deltaTime);
-    lights_.commit(deltaTime);
-    persistence_.commitSave(frameIndex);
+    emitters_.commit(frame);
+    lights_.commit(frame);
+    persistence_.commit(frame);
 }
 
 void World::collect() noexcept {
@@ -401,13 +398,14 @@ void World::applyReadback(const gpu::Readback& readback) {
     budget_.onReadback(readback);
     burn_.onReadback(readback);
     queries_.onReadback(readback);
+    emitters_.onProbes(queries_.jetAnswers());
+    persistence_.forgetTags(queries_.reachedTags(), readback.frameIndex);
     lights_.onReadback(readback);
     fields_.onReadback(readback);
     const BurnCounts& counts = burn_.state().counts;
     rooms_.onReadback(readback, counts.hot != 0 || counts.burning != 0);
     for (const gpu::BurnMap& map : readback.burnMaps) {
-        if (map.object >= scene_.objects.slotCount()) continue;
-        auto* owned = scene_.objects.at(map.object);
+        auto* owned = scene_.objects.findSlot(map.object);
         if (!owned || (*owned)->firstFrame > readback.frameIndex) continue;
         persistence_.onBurnMap(map, readback);
         burn_.onBurnMap(**owned, map, readback);
@@ -471,7 +469,7 @@ void World::setSwitches(uint32_t switches) {
 // ---- the origin -------------------------------------------------------------------------------
 
 void World::shiftOrigin(const float offset[3], float applied[3]) {
-    persistence_.mayChange();
+    recorder_.mayChange();
     checkLengths(offset, 3, "offset", -2e6f, 2e6f);
     double by[3];
     for (int i = 0; i < 3; ++i) {
@@ -485,34 +483,30 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     }
     float whole[3];
     for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
-    scene_.checkShift(by);
-    exchange_.checkShift(by);
-    flames_.checkShift(by);
-    emitters_.checkShift(by);
-    fields_.checkShift(by);
-    wind_.checkShift(by);
-    rooms_.checkShift(by);
+    eachSystem([&](auto& system) {
+        if constexpr (requires { system.checkShift(by); }) system.checkShift(by);
+    });
     scene_.places.reserveMoves(scene_.objects.live());
     std::pmr::vector<Seen> seen = exchange_.recordedSeen();
     shiftBy(by);
     exchange_.restoreSeen(seen);
     if (applied) std::copy_n(whole, 3, applied);
-    persistence_.record(ShiftOrigin{{int32_t(by[0]), int32_t(by[1]), int32_t(by[2])}});
+    recorder_.record(ShiftOrigin{{int32_t(by[0]), int32_t(by[1]), int32_t(by[2])}});
+}
+
+void World::apply(const ShiftOrigin& command) {
+    float offset[3];
+    std::copy_n(command.metres, 3, offset);
+    shiftOrigin(offset, nullptr);
 }
 
 void World::shiftBy(const double (&by)[3]) noexcept {
     if (by[0] == 0 && by[1] == 0 && by[2] == 0) return;
     context_.origin.add(by, context_.lastFrame);
     context_.backend.moveWorld(by);
-    scene_.shiftOrigin(by);
-    exchange_.shiftOrigin(by);
-    rooms_.shiftOrigin(by);
-    wind_.shiftOrigin(by);
-    flames_.shiftOrigin(by);
-    emitters_.shiftOrigin(by);
-    fields_.shiftOrigin(by);
-    lights_.shiftOrigin(by);
-    queries_.shiftOrigin(by);
+    eachSystem([&](auto& system) {
+        if constexpr (requires { system.shiftOrigin(by); }) system.shiftOrigin(by);
+    });
     events_.move(by);
 }
 

@@ -43,9 +43,15 @@ class World {
     [[nodiscard]] PersistenceSystem& persistence() noexcept { return persistence_; }
     [[nodiscard]] BudgetSystem& budget() noexcept { return budget_; }
 
+    // As BurnSystem::ignite; water falls on fuel that sticks to objects, too.
+    uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
     FwBurnableMeshId createBurnableMesh(const FwBurnableMeshDef& given);
     void destroyBurnableMesh(FwBurnableMeshId id);
     void setTransform(FwBurnableMeshId id, const float transform[16]);
+    void apply(const SetPose& command) {
+        setTransform(scene_.objects.findId(command.slot), command.transform.matrix().data());
+    }
+    void apply(const ShiftOrigin& command);
     void setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
                             uint32_t count);
     // Moves every place of the world by whole metres; `applied`: those, or null.
@@ -83,10 +89,16 @@ class World {
     void countObjectFuel(Object& object, const MeshEntry& mesh,
                          std::span<const uint8_t> gone) const;
     void shiftBy(const double (&by)[3]) noexcept;
+    // Visits the scene and all systems whose places move and that know of objects.
+    template <class Visit>
+    void eachSystem(const Visit& visit) {
+        visit(wind_), visit(rooms_), visit(exchange_), visit(burn_), visit(flames_);
+        visit(emitters_), visit(fields_), visit(lights_), visit(queries_), visit(scene_);
+    }
     // At each exchange up to a tick: fires, jets and fields address the objects that they reach.
     void actOnObjects(uint64_t end);
-    void plan(const ClockAdvance& time, float deltaTime, gpu::FramePlan& plan);
-    void commit(uint64_t frameIndex, const ClockAdvance& time, float deltaTime);
+    void plan(const HostFrame& frame, gpu::FramePlan& plan);
+    void commit(const HostFrame& frame);
     void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void applyReadback(const gpu::Readback& readback);
     void countMemory() noexcept;
@@ -98,6 +110,7 @@ class World {
     MemoryCounts memoryCounts_;
     EventQueue events_;
     WorldContext context_;
+    Recorder recorder_;
     Scene scene_;
     WindSystem wind_;
     RoomSystem rooms_;

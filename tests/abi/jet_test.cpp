@@ -252,6 +252,44 @@ TEST(Jet, StuckFuelLightsAWallAndWaterRemovesIt) {
     (void)litBy(0.9f, FW_WET);
 }
 
+// The water of a field follows from the field: a log that is played wets stuck fuel once, not twice.
+TEST(Jet, APlayedLogWetsStuckFuelAsItWas) {
+    constexpr uint64_t kEnd = 3 * 4096;  // ticks
+    const auto make = [](Range& r, bool wets) {
+        r.wall(3);
+        r.jetDef.power = 250;
+        r.jetDef.stick = 0.9f;
+        r.jetDef.stickTime = 20;
+        r.fire();
+        FwParticleFieldDef water = fwDefaultParticleFieldDef();
+        EXPECT_EQ(FW_OK, fwInitFieldPreset(&water, FW_FIELD_WATER));
+        water.flags = wets ? uint32_t(FW_FIELD_WETS) : 0u;
+        water.seed = 7;
+        water.position[0] = 3;
+        water.rotation[1] = water.rotation[3] = 0.70710678f;
+        water.size[0] = water.size[1] = 2.2f;
+        water.sourceSize = 1;
+        water.width = water.height = 32;
+        (void)created(fwWorld_CreateParticleField, r.world, water);
+    };
+    Range dry(true), first(true), again(true);
+    make(dry, false), make(first, true), make(again, true);
+    ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(first.world));
+    dry.run(3), first.run(3);
+    EXPECT_LT(first.jetState().stuckFuel, 0.9f * dry.jetState().stuckFuel) << "it gets wet";
+    uint64_t size = 0;
+    ASSERT_EQ(FW_OK, fwWorld_FetchCommandLog(first.world, nullptr, &size));
+    std::vector<std::byte> log(size);
+    ASSERT_EQ(FW_OK, fwWorld_FetchCommandLog(first.world, log.data(), &size));
+    ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(again.world, log.data(), log.size()));
+    for (float seconds = 1; seconds > 0;) {
+        ASSERT_EQ(FW_OK, fwWorld_PlayCommandLog(again.world, kEnd, &seconds));
+        ASSERT_EQ(FW_OK, fwWorld_Step(again.world, seconds));
+    }
+    EXPECT_EQ(first.jetState().stuckFuel, again.jetState().stuckFuel);
+    EXPECT_EQ(first.burnMaps(), again.burnMaps());
+}
+
 TEST(Jet, BothBackendsAgreeUnderStuckFuel) {
     bothBackendsAgree([](Range& r) {
         r.wall(3);

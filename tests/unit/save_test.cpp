@@ -143,8 +143,8 @@ TEST(SaveChecks, RefuseEventsOfUncoveredTexels) {
     ASSERT_LT(beside, domain.texelCount());
     world::Snapshot saved(memory);
     world::readSnapshot(*bytes, saved);
-    ASSERT_FALSE(saved.pending.empty());
-    saved.pending[0].texel = beside;
+    ASSERT_FALSE(saved.burn.pending.empty());
+    saved.burn.pending[0].texel = beside;
     Bytes bent;
     world::writeSnapshot(saved, bent);
     EXPECT_THROW(world.persistence().load(bent), core::Error);
