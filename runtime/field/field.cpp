@@ -36,6 +36,8 @@ FieldLook fieldPreset(FieldPreset preset) noexcept {
 }
 
 FieldRules fieldRules(const FieldDef& def) noexcept {
+    FW_ASSERT(def.stepRate > 0 && def.look.life > 0, "%u Hz, life %g s", def.stepRate,
+              double(def.look.life));
     const FieldLook& look = def.look;
     FieldRules rules{};
     rules.forceX = int(std::lround(std::clamp(def.wind.x, -4.0f, 4.0f) * 128));

@@ -64,6 +64,8 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
 }
 
 HeatFacts heatFacts(const FwMaterialDef& def) noexcept {
+    FW_ASSERT(def.charFloor > 0 && def.density > 0, "char floor %g, %g kg/m^3",
+              double(def.charFloor), double(def.density));
     HeatFacts facts;
     facts.burns = def.spreadRate > 0;
     facts.thick = def.burnTime <= 0;
@@ -96,6 +98,8 @@ float arealFuel(const FwMaterialDef& def) noexcept {
 gpu::HeatMaterial heatMaterial(const FwMaterialDef& def, const HeatPlace& place) noexcept {
     const double step = double(gpu::kHeatSteps * gpu::kStepTicks) / gpu::kTicksPerSecond;
     const double seconds = step * double(place.pace);
+    FW_ASSERT(seconds > 0 && place.texelArea >= 0, "%g s, %g m^2", seconds,
+              double(place.texelArea));
     gpu::HeatMaterial m = heatMaterial(heatFacts(def), seconds, kAmbient);
     m.moistureAtRest = fixed(double(def.moisture) + double(place.moisture), 128, gpu::kMaxMoist);
     m.burnTicks = fixed(std::max(double(def.burnTime), 0.0) / double(place.pace),

@@ -119,6 +119,7 @@ void checkMaterial(const FwMaterialDef& def) {
 }
 
 float moistureFactor(float moisture, float extinctionMoisture) noexcept {
+    FW_ASSERT(extinctionMoisture > 0, "%g", double(extinctionMoisture));
     const float r = moisture >= extinctionMoisture ? 1.0f : moisture / extinctionMoisture;
     return r >= 1 ? 0.0f : 1.0f + r * (-2.59f + r * (5.11f - 3.52f * r));
 }
@@ -216,6 +217,7 @@ FrontTiming frontTiming(std::span<const FwMaterialDef* const> defs, const Spread
         window = std::max(window, windowLinks(breadth - 1e-9) * link);
         windowMax = std::max(windowMax, windowLinks(most - 1e-9) * link);
         const double fastest = rate * head * (1 + double(def.ceilingGain)) * kNoiseFastest;
+        FW_ASSERT(link > 0 && ratio >= 1, "links of %g ticks, ratio %g", link, ratio);
         const double links = step * fastest / (double(facts.linkShort) * double(facts.scale));
         substeps = std::max(substeps, breadth > 2 ? 2 * links : links);
     }

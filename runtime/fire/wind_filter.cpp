@@ -48,6 +48,9 @@ WindVector filteredWind(const WindFilter& filter) noexcept {
 
 bool latchWind(WindFilter& filter) noexcept {
     const WindVector wind = filteredWind(filter);
+    FW_ASSERT(std::abs(wind[0]) <= kMaxWindUnits && std::abs(wind[1]) <= kMaxWindUnits &&
+                  std::abs(wind[2]) <= kMaxWindUnits,
+              "%d, %d, %d units", wind[0], wind[1], wind[2]);
     if (wind == filter.latched) return false;
     filter.latched = wind;
     return true;

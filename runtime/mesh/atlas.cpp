@@ -44,6 +44,7 @@ double uvEdges(const Surface& surface) {
 // Scales the mesh's own layout to the requested density, or to a lower one that fits. uv becomes
 // texels.
 AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
+    FW_ASSERT(uvAreaSum > 0 && input.maxSide >= 8, "%g, side %u", uvAreaSum, input.maxSide);
     Extent2 extent;
     for (const Triangle& t : surface.triangles) extent.add(t);
     const double side = double(input.maxSide & ~7u) - 2 * kMargin - 1e-6;
@@ -104,6 +105,7 @@ uint32_t keepIslands(Surface& surface, double density, double longest,
             area += surface.triangles[i].area;
             flat += std::abs(uvArea(surface.triangles[i]));
         }
+        FW_ASSERT(!members.empty() && area > 0, "island %u of %g m^2", island, area);
         const double scale = flat > 1e-9 ? std::sqrt(area / flat) : 0;
         for (uint32_t i : members)
             for (glm::dvec2& u : surface.triangles[i].uv) u *= scale;

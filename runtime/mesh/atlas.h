@@ -20,6 +20,7 @@ class Coverage {
  public:
     explicit Coverage(std::pmr::memory_resource* memory) : owner_(memory) {}
     void clear(uint32_t width, uint32_t height) {
+        FW_ASSERT(width > 0 && height > 0, "%u x %u texels", width, height);
         width_ = width;
         height_ = height;
         owner_.assign(size_t(width) * height, 0);

@@ -18,6 +18,7 @@ void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain)
     const double coarse = std::min(grid.side, surface.extent) / kUnitsPerTexel;
     const double quantum = std::max({surface.extent / 65535, coarse, grid.linkMax / kLongestLink});
     domain.quantum = floatAtLeast(quantum);
+    FW_ASSERT(domain.quantum > 0, "%g m", quantum);
     const auto units = [&](float metres) {
         const double u = std::floor(double(metres) / double(domain.quantum) + 0.5);
         return uint16_t(std::clamp(u, 0.0, 65535.0));

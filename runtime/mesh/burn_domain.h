@@ -37,7 +37,7 @@ struct TexelPosition {  // 8 bytes, RGBA16_UINT: rest position in units of `quan
 struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
     uint32_t seamMaskLow = 0;  // texels of this tile that some other tile reads through a link
     uint32_t seamMaskHigh = 0;
-    uint32_t dependentStart = 0;  // into BurnDomain::readers
+    uint32_t dependentStart = 0;  // into BurnDomain::dependents
     uint32_t dependentCount = 0;
     uint32_t rimMaskLow = 0;  // texels of this tile with a link record
     uint32_t rimMaskHigh = 0;
@@ -120,10 +120,10 @@ struct BurnDomain {
     std::pmr::vector<uint16_t> slowness{
         memory};  // Q7 noise factor per texel, 128 = 1; 0 = not real
     std::pmr::vector<uint32_t> triangleOf{
-        memory};                                 // per texel: drawn triangle (index / 3), or kNone
-    std::pmr::vector<uint32_t> links{memory};    // 8 texel indices (or kNone) per rim record
-    std::pmr::vector<uint32_t> readers{memory};  // tiles, see TileStatic
-    std::pmr::vector<TileStatic> tiles{memory};  // tilesX * tilesY
+        memory};                               // per texel: drawn triangle (index / 3), or kNone
+    std::pmr::vector<uint32_t> links{memory};  // 8 texel indices (or kNone) per rim record
+    std::pmr::vector<uint32_t> dependents{memory};  // tiles, see TileStatic
+    std::pmr::vector<TileStatic> tiles{memory};     // tilesX * tilesY
     std::pmr::vector<TileBounds> tileBounds{
         memory};  // per tile, for queries; not stored when cooked
     std::pmr::vector<uint32_t> partLinks{

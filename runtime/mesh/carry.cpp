@@ -107,6 +107,7 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                     taken = other;
                 });
             }
+            FW_ASSERT(taken == kNone || from.real(taken), "texel %u", taken);
             matched += taken != kNone ? 1u : 0u;
         });
     }

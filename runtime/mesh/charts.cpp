@@ -177,6 +177,7 @@ uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t
     if (!(side > longest)) return nextChart;
     const int axis = size.x >= size.y ? 0 : 1;
     const uint32_t pieces = uint32_t(std::min(double(members.size()), std::ceil(side / longest)));
+    FW_ASSERT(pieces >= 1, "%g m in pieces of %g", side, longest);
     for (uint32_t i : members) {
         Triangle& t = surface.triangles[i];
         if (t.chart == kNone) continue;
@@ -211,6 +212,7 @@ void dropOverlaps(Surface& surface, std::span<const uint32_t> members, double de
 
 uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t firstChart,
                     double density, double longest, std::pmr::memory_resource* memory) {
+    FW_ASSERT(density > 0 && longest > 0, "%g per m, %g m", density, longest);
     if (pool.empty()) return firstChart;
     Grower grower(surface, memory);
     Coverage coverage(memory);

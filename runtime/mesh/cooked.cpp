@@ -49,14 +49,14 @@ void reportRecord(auto& s, auto& r) {  // all but the time: equal inputs, equal 
 }
 
 struct Counts {
-    uint32_t linkWords = 0, readers = 0, vertices = 0, indices = 0;
+    uint32_t linkWords = 0, dependents = 0, vertices = 0, indices = 0;
 };
 
 void scalars(auto& s, auto& d, Counts& counts) {
     s.numbers(d.width, d.height, d.quantum, d.texelSide, d.linkShort, d.linkMax, d.materialCount,
               d.hasDetail);
     for (int k = 0; k < 3; ++k) s.numbers(d.origin[k], d.boundsLow[k], d.boundsHigh[k]);
-    s.numbers(counts.linkWords, counts.readers, counts.vertices, counts.indices);
+    s.numbers(counts.linkWords, counts.dependents, counts.vertices, counts.indices);
     reportRecord(s, d.report);
 }
 
@@ -64,7 +64,7 @@ void scalars(auto& s, auto& d, Counts& counts) {
 uint64_t arrayBytes(const BurnDomain& d, const Counts& counts) {
     constexpr uint64_t kTexelBytes = sizeof(TexelPosition) + 4 + 4 + 2 + 2 + 4;
     return d.texelCount() * kTexelBytes + uint64_t(d.tileCount()) * sizeof(TileStatic) +
-           (uint64_t(counts.linkWords) + counts.readers + counts.indices) * 4 +
+           (uint64_t(counts.linkWords) + counts.dependents + counts.indices) * 4 +
            uint64_t(counts.vertices) * (sizeof(RenderVertex) + 4);
 }
 
@@ -81,7 +81,7 @@ void arrays(Stream& s, auto& d, const Counts& counts) {
     all(d.texelCount(), d.texels, d.normals, d.areas, d.thickness, d.slowness, d.triangleOf);
     all(d.tileCount(), d.tiles);
     all(counts.linkWords, d.links);
-    all(counts.readers, d.readers);
+    all(counts.dependents, d.dependents);
     all(counts.vertices, d.vertices, d.sources);
     all(counts.indices, d.indices);
 }
@@ -121,15 +121,16 @@ void checkTexels(const BurnDomain& d) {
 }
 
 void checkTiles(const BurnDomain& d) {
-    uint32_t records = 0, readers = 0;
+    uint32_t records = 0, dependents = 0;
     for (uint32_t t = 0; t < d.tileCount(); ++t) {
         const TileStatic& tile = d.tiles[t];
         const uint64_t rim = tile.rimMask();
         require(tile.rimBase == records, "First link record of a tile", t);
-        require(tile.dependentStart == readers && tile.dependentCount <= d.readers.size() - readers,
-                "Readers of a tile", t);
+        require(tile.dependentStart == dependents &&
+                    tile.dependentCount <= d.dependents.size() - dependents,
+                "Dependents of a tile", t);
         records += uint32_t(std::popcount(rim));
-        readers += tile.dependentCount;
+        dependents += tile.dependentCount;
         const TileTexels texels = d.texelsOf(t);
         for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
             const uint32_t texel = texels[lane];
@@ -138,9 +139,9 @@ void checkTiles(const BurnDomain& d) {
         }
     }
     require(uint64_t(records) * 8 == d.links.size(), "Number of link records", records);
-    require(readers == d.readers.size(), "Number of readers", readers);
-    for (size_t i = 0; i < d.readers.size(); ++i)
-        requireBelow(d.tileCount(), d.readers[i], "Reader", i);
+    require(dependents == d.dependents.size(), "Number of dependents", dependents);
+    for (size_t i = 0; i < d.dependents.size(); ++i)
+        requireBelow(d.tileCount(), d.dependents[i], "Dependent tile", i);
     for (size_t i = 0; i < d.links.size(); ++i) {
         if (d.links[i] == kNone) continue;
         requireBelow(d.texelCount(), d.links[i], "Link", i);
@@ -252,7 +253,7 @@ uint64_t bakeKey(const BakeInput& input) noexcept {
 std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
                                         std::pmr::memory_resource* memory) {
     std::pmr::vector<std::byte> out(memory);
-    Counts counts{uint32_t(domain.links.size()), uint32_t(domain.readers.size()),
+    Counts counts{uint32_t(domain.links.size()), uint32_t(domain.dependents.size()),
                   uint32_t(domain.vertices.size()), uint32_t(domain.indices.size())};
     out.reserve(kHeaderBytes + 512 + arrayBytes(domain, counts));
     Writer writer(out);

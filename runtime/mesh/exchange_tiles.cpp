@@ -74,35 +74,31 @@ static_assert(gpu::kContactGap <= 1u << kCellShift);
 // wherever in the world they are.
 struct ContactCells {
     static constexpr size_t kMaxListed = 4096;
-    int low[3] = {}, high[3] = {};
+    glm::ivec3 low{0}, high{0};
     uint64_t sideY = 0, sideZ = 0;
     bool listed = false;                          // few enough cells for `starts`
     std::array<uint32_t, kMaxListed + 1> starts;  // by cell: its first place
     std::span<const Contacts::Place> places;      // by cell
 
-    [[nodiscard]] uint64_t keyOf(int x, int y, int z) const noexcept {
-        FW_ASSERT(x >= low[0] && y >= low[1] && z >= low[2] && x <= high[0] && y <= high[1] &&
-                      z <= high[2],
-                  "cell (%d, %d, %d)", x, y, z);
-        return (uint64_t(x - low[0]) * sideY + uint64_t(y - low[1])) * sideZ + uint64_t(z - low[2]);
+    [[nodiscard]] uint64_t keyOf(glm::ivec3 cell) const noexcept {
+        const glm::ivec3 at = cell - low;
+        FW_ASSERT(at == glm::max(at, 0) && cell == glm::min(cell, high), "cell (%d, %d, %d)",
+                  cell.x, cell.y, cell.z);
+        return (uint64_t(at.x) * sideY + uint64_t(at.y)) * sideZ + uint64_t(at.z);
     }
     [[nodiscard]] uint64_t keyOf(const Contacts::Place& place) const noexcept {
-        return keyOf(place.at[0] >> kCellShift, place.at[1] >> kCellShift,
-                     place.at[2] >> kCellShift);
+        return keyOf(place.at >> kCellShift);
     }
     void list(std::span<Contacts::Place> given, std::pmr::vector<Contacts::Place>& sorted) {
-        for (int i = 0; i < 3; ++i) {
-            low[i] = std::numeric_limits<int>::max();
-            high[i] = std::numeric_limits<int>::min();
+        FW_ASSERT(!given.empty());
+        low = high = given[0].at >> kCellShift;
+        for (const Contacts::Place& place : given) {
+            low = glm::min(low, place.at >> kCellShift);
+            high = glm::max(high, place.at >> kCellShift);
         }
-        for (const Contacts::Place& place : given)
-            for (int i = 0; i < 3; ++i) {
-                low[i] = std::min(low[i], place.at[i] >> kCellShift);
-                high[i] = std::max(high[i], place.at[i] >> kCellShift);
-            }
-        sideY = uint64_t(int64_t(high[1]) - low[1]) + 1;
-        sideZ = uint64_t(int64_t(high[2]) - low[2]) + 1;
-        const uint64_t cells = keyOf(high[0], high[1], high[2]) + 1;
+        sideY = uint64_t(high.y - low.y) + 1;
+        sideZ = uint64_t(high.z - low.z) + 1;
+        const uint64_t cells = keyOf(high) + 1;
         listed = cells <= kMaxListed;
         if (!listed) {
             sorted.assign(given.begin(), given.end());
@@ -123,10 +119,10 @@ struct ContactCells {
     // The places in cells `first` to `last` of a row along z.
     [[nodiscard]] std::span<const Contacts::Place> row(int x, int y, int first,
                                                        int last) const noexcept {
-        first = std::max(first, low[2]);
-        last = std::min(last, high[2]);
-        if (x < low[0] || x > high[0] || y < low[1] || y > high[1] || first > last) return {};
-        const uint64_t from = keyOf(x, y, first), end = keyOf(x, y, last) + 1;
+        first = std::max(first, low.z);
+        last = std::min(last, high.z);
+        if (x < low.x || x > high.x || y < low.y || y > high.y || first > last) return {};
+        const uint64_t from = keyOf({x, y, first}), end = keyOf({x, y, last}) + 1;
         if (listed) return {&places[0] + starts[from], starts[end] - starts[from]};
         const auto before = [&](const Contacts::Place& a, uint64_t key) { return keyOf(a) < key; };
         const auto at = std::lower_bound(places.begin(), places.end(), from, before);
@@ -156,6 +152,8 @@ gpu::ivec3 placeOf(const ContactSide& side, uint32_t texel) noexcept {
 // The burnable texels of `side` that are near `other`, block by block.
 void placeNear(const ContactSide& side, const Box& other, std::pmr::vector<Contacts::Place>& out) {
     const BurnDomain& domain = *side.domain;
+    FW_ASSERT(domain.tileBounds.size() == domain.tileCount(), "%zu of %u tiles",
+              domain.tileBounds.size(), domain.tileCount());
     for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
         const TileBounds& bounds = domain.tileBounds[tile];
         if (bounds.low[0] > bounds.high[0]) continue;
@@ -169,7 +167,7 @@ void placeNear(const ContactSide& side, const Box& other, std::pmr::vector<Conta
             if (!burnsAt(side, texel)) continue;
             const gpu::ivec3 p = placeOf(side, texel);
             if (!inside(p, other, int(gpu::kContactGap))) continue;
-            out.push_back({{p.x, p.y, p.z}, texel, tile * 4 + block});
+            out.push_back({p, texel, tile * 4 + block});
         }
     }
 }
@@ -190,8 +188,8 @@ struct NearestPair {
 
     void offer(const Contacts::Place& a, std::span<const Contacts::Place> row) noexcept {
         for (const Contacts::Place& b : row) {
-            const int x = b.at[0] - a.at[0], y = b.at[1] - a.at[1], z = b.at[2] - a.at[2];
-            const int square = x * x + y * y + z * z;
+            const glm::ivec3 d = b.at - a.at;
+            const int square = d.x * d.x + d.y * d.y + d.z * d.z;
             if (square > limit || (square == limit && from && !comesBefore(a, b))) continue;
             limit = square;
             to = &a;
@@ -207,19 +205,17 @@ struct NearestPair {
         return b.texel < from->texel;
     }
     void offerOwnCell(const Contacts::Place& a) noexcept {
-        const int z = a.at[2] >> kCellShift;
-        offer(a, cells.row(a.at[0] >> kCellShift, a.at[1] >> kCellShift, z, z));
+        const glm::ivec3 cell = a.at >> kCellShift;
+        offer(a, cells.row(cell.x, cell.y, cell.z, cell.z));
     }
     // Cells around that may hold a nearer one.
     void offerAround(const Contacts::Place& a) noexcept {
         constexpr int kSide = 1 << kCellShift;
-        int before[3], after[3];  // squared mm along each axis to the next cell
-        for (int i = 0; i < 3; ++i) {
-            const int within = a.at[i] & (kSide - 1);
-            before[i] = (within + 1) * (within + 1);
-            after[i] = (kSide - within) * (kSide - within);
-        }
-        const int x = a.at[0] >> kCellShift, y = a.at[1] >> kCellShift, z = a.at[2] >> kCellShift;
+        // Squared mm along each axis to the next cell.
+        const glm::ivec3 within = a.at & (kSide - 1);
+        const glm::ivec3 before = (within + 1) * (within + 1);
+        const glm::ivec3 after = (kSide - within) * (kSide - within);
+        const int x = a.at.x >> kCellShift, y = a.at.y >> kCellShift, z = a.at.z >> kCellShift;
         for (int dx = before[0] <= limit ? -1 : 0; dx <= (after[0] <= limit ? 1 : 0); ++dx) {
             const int squareX = dx == 0 ? 0 : dx < 0 ? before[0] : after[0];
             for (int dy = squareX + before[1] <= limit ? -1 : 0;
@@ -247,6 +243,8 @@ void findNearest(std::span<const Contacts::Place> places, const ContactCells& ce
         // Own cells first: their nearest pair rules out most of the cells around.
         for (size_t i = first; i < end; ++i) nearest.offerOwnCell(places[i]);
         for (size_t i = first; i < end; ++i) nearest.offerAround(places[i]);
+        FW_ASSERT(nearest.limit >= 0 && (nearest.from != nullptr) == (nearest.to != nullptr),
+                  "squared gap %d", nearest.limit);
         if (nearest.from)
             out.push_back(
                 {nearest.to->texel, nearest.from->texel, gpu::isqrtNear(uint32_t(nearest.limit))});
@@ -296,6 +294,7 @@ uint32_t sourceCells(std::span<const gpu::ExchangeTile> tiles) noexcept {
 
 Box placedBox(const gpu::ExchangeObject& place, const uint16_t (&low)[3],
               const uint16_t (&high)[3]) noexcept {
+    FW_ASSERT(place.shift < 32, "shift %u", place.shift);
     const gpu::ivec4* const rows[3] = {&place.row0, &place.row1, &place.row2};
     Box box;
     for (int i = 0; i < 3; ++i) {  // as toWorldMm of the corners

@@ -36,7 +36,7 @@ constexpr size_t kMaxContacts = 8192;
 // Memory that searches for contacts share, and the last search's contacts.
 struct Contacts {
     struct Place {  // a burnable texel near the other object
-        int at[3] = {};
+        glm::ivec3 at{0};
         uint32_t texel = 0, block = 0;  // block: of 4 x 4 texels
         uint32_t cell = 0;              // of the search, where ContactCells::listed
     };

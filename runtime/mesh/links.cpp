@@ -41,6 +41,7 @@ Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, 
         const Triangle& t = surface.triangles[walk.triangle];
         const glm::dvec3 normal =
             glm::cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);
+        FW_ASSERT(walk.triangle < surface.triangles.size(), "triangle %u", walk.triangle);
         const double square = glm::dot(normal, normal);
         double change[3], until = 1;
         int exit = -1;  // the corner opposite the edge through which we leave
@@ -206,6 +207,7 @@ class Linker {
     // point. The point of a forced texel is off its centre, and the centres around would not lie on
     // all sides of it.
     [[nodiscard]] glm::dvec3 stepOf(uint32_t texel, size_t k) const {
+        FW_ASSERT(grid_.owner[texel] < grid_.shapes.size(), "owner of texel %u", texel);
         const double x = kRingX[k], y = kRingY[k];
         const TexelShape& shape = grid_.shapes[grid_.owner[texel]];
         if (shape.usable) return shape.alongU * x + shape.alongV * y;
@@ -450,6 +452,7 @@ class Linker {
                 longest = std::max(longest, grid_.distance(i, j));
             });
         });
+        FW_ASSERT(shortest >= 0 && longest < 1e12, "links of %g to %g m", shortest, longest);
         grid_.linkMax = longest;
         report_.linkMin = longest > 0 ? shortest / grid_.side : 0;
         report_.linkMax = longest / grid_.side;

@@ -28,6 +28,7 @@ glm::dvec2 turned(glm::dvec2 u, glm::dvec2 cosSin) {
 
 // Turns a chart so that its box is smallest and upright, and moves it to the origin.
 Piece orientPiece(Surface& surface, std::span<const uint32_t> members, uint32_t chart) {
+    FW_ASSERT(!members.empty(), "chart %u is empty", chart);
     glm::dvec2 bestCosSin(1, 0);
     double bestArea = 1e300;
     for (int turn = 0; turn < kTurns; ++turn) {
@@ -69,6 +70,7 @@ class Packer {
 
     // Column outlines of all charts at this density. Returns their texels, borders included.
     double outline(double density) {
+        FW_ASSERT(density > 0, "%g texels per m", density);
         bottoms_.clear();
         tops_.clear();
         double cells = 0;

@@ -21,6 +21,7 @@ constexpr double kMaxDistance = 2305843009213693952.0;  // 2^61
 constexpr int64_t kMaxUnits = int64_t(1) << 30;         // three squares of these fit into 63 bits
 
 int64_t toUnits(double metres, double quantum) {
+    FW_ASSERT(quantum > 0, "%g m", quantum);
     const double units = metres / quantum;
     if (std::isnan(units)) return 0;
     return int64_t(std::floor(std::clamp(units, -kMaxDistance, kMaxDistance) + 0.5));
@@ -99,6 +100,7 @@ void texelsNear(const BurnDomain& domain, const float point[3], float radius,
     if (centre == kNone) return;
     const TexelPosition& p = domain.texels[centre];
     const int64_t reach = std::min(unitsOf(domain, radius), kMaxUnits);  // the mesh ends before
+    FW_ASSERT(domain.real(centre), "texel %u", centre);
     visitWithin(domain, {{p.x, p.y, p.z}, 0}, reach * reach,
                 [&](uint32_t texel, int64_t) { out.push_back(texel); });
     std::sort(out.begin(), out.end());

@@ -57,6 +57,7 @@ double clippedArea(const Triangle& t, int x, int y) {
             if ((a > 0) != (b > 0) && a != b) to[kept++] = p + (q - p) * (a / (a - b));
         }
         count = kept;
+        FW_ASSERT(count <= 12, "%d corners", count);
         std::copy(to, to + count, from);
     }
     double sum = 0;
@@ -180,6 +181,7 @@ class Rasteriser {
         AreaHeir heir(surface_, grid_, memory_);
         for (const Part& part : parts_) {
             const uint32_t chart = surface_.triangles[part.triangle].chart;
+            FW_ASSERT(chart < heirOf.size(), "chart %u of %zu", chart, heirOf.size());
             const glm::ivec2 middle = grid_.placeOf(part.texel);
             uint32_t best = kNone;
             int nearest = 1 << 30;

@@ -105,6 +105,7 @@ class RayTree {
     static float invert(float v) { return std::abs(v) > 1e-20f ? 1 / v : (v < 0 ? -1e20f : 1e20f); }
 
     void build(uint32_t begin, uint32_t end) {
+        FW_ASSERT(begin < end && end <= order_.size(), "triangles %u to %u", begin, end);
         const uint32_t index = uint32_t(nodes_.size());
         Node node{glm::vec3(1e30f), glm::vec3(-1e30f)};
         glm::vec3 low(1e30f), high(-1e30f);  // of the centres

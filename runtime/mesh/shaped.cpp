@@ -73,6 +73,8 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     const double fine = double(from.quantum) * std::cbrt(volume);
     const double quantum = std::max({extent / 65535, fine, double(out.linkMax) / kLongestLink});
     out.quantum = floatAtLeast(quantum);
+    FW_ASSERT(out.quantum > 0 && out.linkMax >= 0, "%g m, links of %g m", quantum,
+              double(out.linkMax));
 
     double areas = 0, areasBefore = 0;
     for (uint32_t i = 0; i < from.texelCount(); ++i) {
@@ -103,6 +105,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     if (shape.x * shape.y * shape.z < 0)  // faces go on turning outwards
         for (size_t i = 0; i + 2 < out.indices.size(); i += 3)
             std::swap(out.indices[i + 1], out.indices[i + 2]);
+    FW_ASSERT(growth > 0 && growth < 1e12, "growth %g", growth);
     buildTileBounds(out);
     linkParts(out, memory);
     return out;

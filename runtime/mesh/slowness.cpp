@@ -58,6 +58,7 @@ void bakeSlowness(const BakeInput& input, const TexelGrid& grid, glm::dvec3 low,
     const double feature =
         std::max({double(input.noiseFeature), 1e-3 * grid.side, 1e-9 * farthest});
     const double mean = 128 * speedUp(amplitude, feature / grid.side);
+    FW_ASSERT(feature > 0 && mean > 0, "features of %g m, mean %g", feature, mean);
     for (uint32_t texel = 0; texel < grid.count(); ++texel) {
         if (!grid.real(texel)) continue;
         const glm::dvec3 p = (low + glm::dvec3(grid.position[texel])) / feature;

@@ -31,6 +31,7 @@ uint64_t cellHash(int64_t x, int64_t y, int64_t z) {
 uint32_t weld(const BakeInput& input, double distance, std::pmr::vector<uint32_t>& pointOf,
               std::pmr::memory_resource* memory) {
     const uint32_t vertices = uint32_t(input.positions.size() / 3);
+    FW_ASSERT(distance > 0 && vertices > 0, "%u vertices, %g m", vertices, distance);
     const uint32_t buckets = std::max(64u, std::bit_ceil(vertices));
     std::pmr::vector<uint32_t> head(buckets, kNone, memory);
     std::pmr::vector<uint32_t> next(memory), first(memory);  // per point; first = its vertex
@@ -104,6 +105,7 @@ RowSpan rowsOf(const Triangle& t, int height) {
 }
 
 RowSpan rowSpan(const Triangle& t, int y, int width) {
+    FW_ASSERT(width > 0 && y >= 0, "row %d of %d columns", y, width);
     double low = 1e300, high = -1e300;
     for (int e = 0; e < 3; ++e) {
         glm::dvec2 a = t.uv[e], b = t.uv[(e + 1) % 3];

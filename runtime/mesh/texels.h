@@ -53,6 +53,7 @@ struct TexelGrid {
         return (flags[texel] & kTexelReal) != 0;
     }
     [[nodiscard]] glm::dvec3 weightsOf(uint32_t texel) const {
+        FW_ASSERT(owner[texel] != kNone, "texel %u has no owner", texel);
         const glm::dvec2 w(weights[texel]);
         return {w.x, w.y, 1 - w.x - w.y};
     }
@@ -62,6 +63,7 @@ struct TexelGrid {
         return uint32_t(int(texel) + kRingY[size_t(k)] * int(width) + kRingX[size_t(k)]);
     }
     [[nodiscard]] double distance(uint32_t a, uint32_t b) const {
+        FW_ASSERT(a < position.size() && b < position.size(), "texels %u and %u", a, b);
         return double(glm::length(position[a] - position[b]));
     }
 };

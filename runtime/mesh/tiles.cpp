@@ -19,7 +19,7 @@ void setBit(uint32_t& low, uint32_t& high, uint32_t lane) {
 void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory) {
     FW_ASSERT(grid.count() == domain.texelCount(), "%u and %u texels", grid.count(),
               domain.texelCount());
-    FW_ASSERT(domain.links.empty() && domain.readers.empty());
+    FW_ASSERT(domain.links.empty() && domain.dependents.empty());
     domain.tiles.assign(domain.tileCount(), TileStatic{});
     std::pmr::vector<Read> reads(memory);
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
@@ -43,13 +43,13 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_reso
     }
     std::sort(reads.begin(), reads.end());
     reads.erase(std::unique(reads.begin(), reads.end()), reads.end());
-    domain.readers.reserve(reads.size());
+    domain.dependents.reserve(reads.size());
     size_t next = 0;
     FW_ASSERT(domain.links.size() % 8 == 0, "%zu links", domain.links.size());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         domain.tiles[t].dependentStart = uint32_t(next);
         for (; next < reads.size() && reads[next].of == t; ++next)
-            domain.readers.push_back(reads[next].to);
+            domain.dependents.push_back(reads[next].to);
         domain.tiles[t].dependentCount = uint32_t(next) - domain.tiles[t].dependentStart;
     }
 }

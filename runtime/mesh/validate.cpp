@@ -17,14 +17,13 @@ void requireFinite(const char* array, std::span<const float> values, size_t widt
     for (size_t i = 0; i < values.size(); ++i) {
         const double value = values[i];
         if (std::isfinite(value) && std::abs(value) <= kCoordinateLimit) continue;
-        if (of == Of::lengths)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s of vertex %zu, component %zu, is " FW_LENGTH
-                       "; it must be finite and within +-" FW_LENGTH ".",
-                       array, i / width, i % width, value, kCoordinateLimit);
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s of vertex %zu, component %zu, is %g; it must be finite and within +-%g.",
-                   array, i / width, i % width, value, kCoordinateLimit);
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            of == Of::lengths
+                ? "%s of vertex %zu, component %zu, is " FW_LENGTH
+                  "; it must be finite and within +-" FW_LENGTH "."
+                : "%s of vertex %zu, component %zu, is %g; it must be finite and within +-%g.",
+            array, i / width, i % width, value, kCoordinateLimit);
     }
 }
 

@@ -26,12 +26,12 @@ glm::dvec3 unit(const glm::dvec3& v) {
 std::pmr::vector<FarLinks> makeFarLinks(const mesh::BurnDomain& domain,
                                         const mesh::DeformModel& model,
                                         std::pmr::memory_resource* memory) {
-    std::pmr::vector<FarLinks> links(model.nodes.size(), memory);
+    std::pmr::vector<FarLinks> links(model.particles.size(), memory);
     const auto nodeAt = [&](uint32_t vertex) -> const gpu::DeformParticle& {
-        return model.nodes[model.nodeOf[vertex]];
+        return model.particles[model.particleOf[vertex]];
     };
     for (size_t i = 0; i < links.size(); ++i) {
-        const gpu::DeformParticle& node = model.nodes[i];
+        const gpu::DeformParticle& node = model.particles[i];
         const glm::dvec3 at = placeOf(domain.vertices[node.vertex]);
         std::fill(std::begin(links[i].vertex), std::end(links[i].vertex), kNone);
         for (uint32_t k = 0; k < (node.flags >> gpu::kParticleRingShift & 15u); ++k) {
@@ -50,11 +50,11 @@ std::pmr::vector<FarLinks> makeFarLinks(const mesh::BurnDomain& domain,
     }
     // A link that only one end lists gets no length: forces need both ends.
     for (size_t i = 0; i < links.size(); ++i) {
-        const gpu::DeformParticle& node = model.nodes[i];
+        const gpu::DeformParticle& node = model.particles[i];
         for (uint32_t k = 0; k < kDeformRing; ++k) {
             const uint32_t far = links[i].vertex[k];
             if (far == kNone || far == node.vertex) continue;
-            const auto& back = links[model.nodeOf[far]].vertex;
+            const auto& back = links[model.particleOf[far]].vertex;
             if (std::find(std::begin(back), std::end(back), node.vertex) == std::end(back))
                 continue;
             const gpu::DeformParticle& other = nodeAt(far);
@@ -74,7 +74,7 @@ void packFarLinks(const mesh::DeformModel& model, std::span<const FarLinks> link
         for (uint32_t turn = 0; turn < gpu::kDeformLinkPasses; ++turn) {
             const auto end = [&](uint32_t k) {
                 const uint32_t vertex = links[i].vertex[2 * turn + k];
-                return vertex == kNone ? i : model.nodeOf[vertex];
+                return vertex == kNone ? i : model.particleOf[vertex];
             };
             const float* length = links[i].length + 2 * turn;
             out[turn * count + i] = {end(0), end(1), glm::packHalf2x16({length[0], length[1]}), 0};

@@ -5,8 +5,9 @@
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(EXCHANGE_OBJECTS) FW_READ(SOURCES) FW_READ(NEIGHBOURS)
 FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(RECEIVERS) FW_PUSH(ExchangePush)
-#include "lib/gives.glsl"
 #include "lib/lists.glsl"
+#define FW_PASS_GIVES
+#include "shared/exchange_pass.h"
 
 // Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry`
 // and a `weight`.

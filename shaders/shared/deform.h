@@ -73,7 +73,7 @@ struct DeformParticle {       // constant, per mesh
     // Direction of recession: -1 along every face's normal where possible
     float outX; float outY; float outZ;
     float limit;                 // m, largest recession
-    uint arms[8];                // bending partners behind and ahead, per set; or kNoneTexel
+    uint bendEnds[8];            // bending partners behind and ahead, per set; or kNoneTexel
     float bendLength[8];          // m
     float bendRise[4];            // m, as `rise`, of each pair
 };
@@ -88,7 +88,7 @@ struct DeviceLinks {      // one link pass
 struct DeviceParticle {
     uint vertex; uint flags; float rise; uint opposite;
     DeviceLinks near_[4];
-    DeviceLinks arms[4];
+    DeviceLinks bends[4];
     float x; float y; float z; float area;
     uint texels[16];
     float outX; float outY; float outZ; float limit;

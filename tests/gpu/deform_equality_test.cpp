@@ -42,15 +42,15 @@ struct Pair {
           states(domain.texelCount(), gpu::kInert),
           rig(testDevice, kBindings, sizeof(gpu::DeformPush),
               words ? std::span<const uint32_t>() : kTexels) {
-        object.nodeCount = uint32_t(model.nodes.size());
+        object.nodeCount = uint32_t(model.particles.size());
         object.vertexCount = uint32_t(domain.vertices.size());
         object.ground = -1e9f;
         object.scale = 1;
         mesh::resetDeform(model, state);
         mesh::resetSoft(model, object, state);
-        std::vector<gpu::DeviceParticle> nodes(model.nodes.size());
+        std::vector<gpu::DeviceParticle> nodes(model.particles.size());
         for (uint32_t i = 0; i < nodes.size(); ++i)
-            mesh::putQuads(mesh::deviceNode(model, i), i, nodes.size(),
+            mesh::putQuads(mesh::deviceParticle(model, i), i, nodes.size(),
                            reinterpret_cast<std::byte*>(nodes.data()));
         std::vector<gpu::DeformEmbedding> embeddings(model.embeddings.size());
         for (size_t i = 0; i < embeddings.size(); ++i)
@@ -124,7 +124,7 @@ struct Pair {
         const std::pmr::vector<gpu::ShownVertex> before = state.shown;
         mesh::recede(model, object, states, now, state);
         std::vector<float> lost;
-        for (const gpu::DeformParticle& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.particles) {
             gpu::ShownVertex& shown = state.shown[node.vertex];
             const gpu::ShownVertex& last = before[node.vertex];
             const float more = fresh ? 0 : shown.burnt - last.burnt;
@@ -152,20 +152,20 @@ struct Pair {
     void sync() {
         const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
         const auto soft = rig.of<gpu::uvec4>(FW_BIND_SOFT);
-        for (size_t i = 0; i < model.nodes.size(); ++i) {
-            const uint32_t vertex = model.nodes[i].vertex;
+        for (size_t i = 0; i < model.particles.size(); ++i) {
+            const uint32_t vertex = model.particles[i].vertex;
             const mesh::DeformState::Soft& own = state.soft[vertex];
             const vec3 at = own.place[state.parity];
             const auto unpackBendShare = [&](int kind) {
                 return gpu::packBendShare(own.share[state.parity][kind] * gpu::kBendUnit);
             };
             const uint32_t way = gpu::packPathLength(own.reach[state.parity], own.known);
-            soft[i + (odd ? model.nodes.size() : 0)] = {
+            soft[i + (odd ? model.particles.size() : 0)] = {
                 gpu::packPathBits(std::bit_cast<uint32_t>(at.x), way, gpu::kPathLowMask),
                 gpu::packPathBits(std::bit_cast<uint32_t>(at.y), way >> 5, gpu::kPathLowMask),
                 gpu::packPathBits(std::bit_cast<uint32_t>(at.z), way >> 10, gpu::kPathHighMask),
                 unpackBendShare(0)};
-            soft[i + 3 * model.nodes.size()] = {
+            soft[i + 3 * model.particles.size()] = {
                 gpu::packParticleFacts(own.burnt, own.reach[state.parity] == 0), 0,
                 unpackBendShare(1), unpackBendShare(1)};
             shown[vertex].x = state.shown[vertex].x;
@@ -261,7 +261,7 @@ TEST_F(DeformEquality, RecedingSolidsAgree) {
         ASSERT_LT(apart.lead, 1e-4);
     }
     EXPECT_GT(pair.apart().moved, 0.003);
-    EXPECT_LT(0, std::count_if(pair.model.nodes.begin(), pair.model.nodes.end(),
+    EXPECT_LT(0, std::count_if(pair.model.particles.begin(), pair.model.particles.end(),
                                [](const auto& n) { return n.opposite != mesh::kNone; }));
 }
 

@@ -48,14 +48,14 @@ vec3 normalOf(const DeformParticle& node, const DeformState& state, uint32_t par
 float inSteps(float charred) { return std::floor(charred * gpu::kCharredSteps + 0.5f); }
 
 void linkCachePass(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
-    for (const DeformParticle& node : model.nodes)
+    for (const DeformParticle& node : model.particles)
         state.soft[node.vertex].burnt = state.shown[node.vertex].burnt;
-    for (const DeformParticle& node : model.nodes) {
+    for (const DeformParticle& node : model.particles) {
         DeformState::Soft& self = state.soft[node.vertex];
-        const auto number = uint32_t(&node - model.nodes.data());
+        const auto number = uint32_t(&node - model.particles.data());
         const auto holds = [&](uint32_t other) {
             return gpu::linkHolds(self.burnt, state.soft[other].burnt,
-                                  gpu::linkOdds(number, model.nodeOf[other]));
+                                  gpu::linkOdds(number, model.particleOf[other]));
         };
         const Links links(node.ringLength);
         self.holds = self.pinned = 0;
@@ -70,7 +70,7 @@ void linkCachePass(const DeformModel& model, const gpu::DeformObject& object, De
             ++count;
         }
         for (uint32_t k = 0; k < 2 * gpu::kBendSets; ++k)
-            if (node.arms[k] != kNone && holds(node.arms[k])) self.holds |= 1u << (k + 8);
+            if (node.bendEnds[k] != kNone && holds(node.bendEnds[k])) self.holds |= 1u << (k + 8);
         const uint32_t ring = node.flags >> gpu::kParticleRingShift & 15u;
         self.whole = (node.flags & gpu::kParticleClosed) && count == ring;
         float nearest = 1e30f;
@@ -129,7 +129,7 @@ vec3 bendingOf(const DeformParticle& node, const DeformMaterial& material, const
     count = squares = 0;
     float ends[2]{};
     for (uint32_t k = 0; k < 2; ++k) {
-        const uint32_t arm = 2 * state.way + k, other = node.arms[arm];
+        const uint32_t arm = 2 * state.way + k, other = node.bendEnds[arm];
         if (other == kNone) continue;
         ends[k] = inSteps(gpu::charredShare(state.soft[other].burnt)) / gpu::kCharredSteps;
         const vec3 to = state.soft[other].place[now] - x;
@@ -147,7 +147,7 @@ vec3 bendingOf(const DeformParticle& node, const DeformMaterial& material, const
          (node.flags & gpu::kParticleBendsEven << state.way) != 0);
     const uint32_t echoed = (state.way + gpu::kBendSets - 1) % gpu::kBendSets;
     for (uint32_t k = 0; k < 2; ++k)
-        if (const uint32_t other = node.arms[2 * echoed + k]; other != kNone)
+        if (const uint32_t other = node.bendEnds[2 * echoed + k]; other != kNone)
             bending -= state.soft[other].share[now][1];
     return bending;
 }
@@ -158,7 +158,7 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
     state.soft.assign(model.embeddings.size(), {});
     state.parity = state.way = 0;
     state.tied = false;
-    for (const DeformParticle& node : model.nodes) {
+    for (const DeformParticle& node : model.particles) {
         DeformState::Soft& soft = state.soft[node.vertex];
         soft.place[0] = soft.place[1] = restOf(node);
         // Known from the start, or a sheet would fall until the distance to its pins has spread to
@@ -178,7 +178,7 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
                DeformState& state) {
     if (!state.tied || gpu::updatesLinkCache(state.way)) linkCachePass(model, object, state);
     const uint32_t now = state.parity;
-    for (const DeformParticle& node : model.nodes) {
+    for (const DeformParticle& node : model.particles) {
         DeformState::Soft& self = state.soft[node.vertex];
         ShownVertex& shown = state.shown[node.vertex];
         const DeformMaterial& material = object.materials[node.flags & 7u];
@@ -235,8 +235,8 @@ void springStep(const DeformModel& model, std::span<const reference::FarLinks> f
                 float step, std::span<const float> lost, float damping, DeformState& state) {
     const uint32_t now = state.parity;
     const float share = stiffness * gpu::kSpringShare;
-    for (size_t i = 0; i < model.nodes.size(); ++i) {
-        const DeformParticle& node = model.nodes[i];
+    for (size_t i = 0; i < model.particles.size(); ++i) {
+        const DeformParticle& node = model.particles[i];
         DeformState::Soft& self = state.soft[node.vertex];
         const vec3 x = self.place[now];
         const Links ring(node.ringLength);
@@ -261,13 +261,14 @@ void springStep(const DeformModel& model, std::span<const reference::FarLinks> f
 
 void resetDeform(const DeformModel& model, DeformState& state) {
     state.shown.assign(model.embeddings.size(), ShownVertex{});
-    for (const DeformParticle& node : model.nodes) place(state.shown[node.vertex], restOf(node));
+    for (const DeformParticle& node : model.particles)
+        place(state.shown[node.vertex], restOf(node));
     skinVertices(model, state);
 }
 
 void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state) {
-    for (const DeformParticle& node : model.nodes) {
+    for (const DeformParticle& node : model.particles) {
         ShownVertex& shown = state.shown[node.vertex];
         const DeformMaterial& material = object.materials[node.flags & 7u];
         float sum = 0, known = 0;

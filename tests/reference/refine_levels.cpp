@@ -180,7 +180,7 @@ void refineHeat(const BurnDomain& domain, std::span<const uint32_t> tileFlags, b
                 tiles[size_t(v * width + u)] |= gpu::kRefineHot;
         const TileStatic& tile = domain.tiles[t];
         for (uint32_t r = 0; r < tile.dependentCount; ++r)
-            tiles[domain.readers[tile.dependentStart + r]] |= gpu::kRefineHot;
+            tiles[domain.dependents[tile.dependentStart + r]] |= gpu::kRefineHot;
     }
 }
 

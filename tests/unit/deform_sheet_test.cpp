@@ -65,7 +65,7 @@ struct Sheet {
     vec3 nearest(vec3 rest) const {
         const gpu::DeformParticle* best = nullptr;
         float least = 1e30f;
-        for (const gpu::DeformParticle& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.particles) {
             const float d = gpu::length(vec3(node.x, node.y, node.z) - rest);
             if (d >= least) continue;
             least = d;
@@ -75,12 +75,12 @@ struct Sheet {
     }
     template <class Of>
     void burn(Of of) {
-        for (const gpu::DeformParticle& node : model.nodes)
+        for (const gpu::DeformParticle& node : model.particles)
             state.shown[node.vertex].burnt = of(vec3(node.x, node.y, node.z));
     }
     double kinetic() const {
         double sum = 0;
-        for (const gpu::DeformParticle& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.particles) {
             const vec3 v = state.soft[node.vertex].place[state.parity] - at(node);
             sum += double(gpu::dot(v, v)) / double(drive.step) / double(drive.step) / 2;
         }
@@ -90,7 +90,7 @@ struct Sheet {
     double energy() const {
         const double perStep = 1 / double(drive.step) / double(drive.step);
         double sum = kinetic();
-        for (const gpu::DeformParticle& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.particles) {
             const DeformState::Soft& self = state.soft[node.vertex];
             for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
                 const float rest = gpu::unpackHalf2x16(node.ringLength[k / 2])[int(k & 1)];
@@ -114,14 +114,14 @@ struct Sheet {
     // Largest ratio of length to rest length over intact links.
     double stretch() const {
         double worst = 0;
-        for (const gpu::DeformParticle& node : model.nodes)
+        for (const gpu::DeformParticle& node : model.particles)
             for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
                 const float rest = gpu::unpackHalf2x16(node.ringLength[k / 2])[int(k & 1)];
                 if (!(rest > 0)) continue;
-                const gpu::DeformParticle& other = model.nodes[model.nodeOf[node.ring[k]]];
-                if (!gpu::linkHolds(
-                        state.shown[node.vertex].burnt, state.shown[other.vertex].burnt,
-                        gpu::linkOdds(model.nodeOf[node.vertex], model.nodeOf[other.vertex])))
+                const gpu::DeformParticle& other = model.particles[model.particleOf[node.ring[k]]];
+                if (!gpu::linkHolds(state.shown[node.vertex].burnt, state.shown[other.vertex].burnt,
+                                    gpu::linkOdds(model.particleOf[node.vertex],
+                                                  model.particleOf[other.vertex])))
                     continue;
                 worst = std::max(worst, double(gpu::length(at(node) - at(other)) / rest));
             }
@@ -132,7 +132,7 @@ struct Sheet {
 TEST(DeformSheet, StaysFlatWithoutFireOrForce) {
     Sheet s(16, paper(30));
     s.run(500);
-    for (const gpu::DeformParticle& node : s.model.nodes)
+    for (const gpu::DeformParticle& node : s.model.particles)
         ASSERT_LT(gpu::length(s.at(node) - vec3(node.x, node.y, node.z)), 1e-4f);
 }
 
@@ -144,7 +144,7 @@ TEST(DeformSheet, EnergyNeverGrows) {
         Sheet s(16, object);
         std::mt19937 random(5);
         std::uniform_real_distribution<float> off(-0.0005f, 0.0005f);
-        for (const gpu::DeformParticle& node : s.model.nodes) {
+        for (const gpu::DeformParticle& node : s.model.particles) {
             vec3& p = s.state.soft[node.vertex].place[0];
             p += vec3(off(random), off(random), off(random) + 0.01f * std::sin(20 * node.x));
         }
@@ -180,7 +180,7 @@ Curl curlOf(float step, float curl) {
     s.burn([](vec3 at) { return 0.75f * std::max(0.0f, 2 * at.x / float(kPaper) - 1); });
     s.run(int(8.0f / step));
     Curl made;
-    for (const gpu::DeformParticle& node : s.model.nodes) {
+    for (const gpu::DeformParticle& node : s.model.particles) {
         const double z = std::fabs(double(s.at(node).z));
         made.most = std::max(made.most, z);
     }
@@ -260,8 +260,8 @@ double bendsInWind(int cells, float stiffness, bool arms) {
     s.drive.wind = {0.2f, 0, 2};
     std::vector<uint32_t> at(size_t(cells + 1) * size_t(cells + 1));
     const float cell = float(kPaper) / float(cells);
-    for (gpu::DeformParticle& node : s.model.nodes) {
-        if (!arms) std::fill(std::begin(node.arms), std::end(node.arms), kNone);
+    for (gpu::DeformParticle& node : s.model.particles) {
+        if (!arms) std::fill(std::begin(node.bendEnds), std::end(node.bendEnds), kNone);
         const auto column = size_t(std::lround(node.x / cell));
         at[size_t(std::lround(node.y / cell)) * size_t(cells + 1) + column] = node.vertex;
     }
@@ -309,7 +309,7 @@ TEST(DeformSheet, PinsHoldFromTheFirstStep) {
     float worst = 0;
     for (int step = 0; step < 128; ++step) {
         s.run(1);
-        for (const gpu::DeformParticle& node : s.model.nodes)
+        for (const gpu::DeformParticle& node : s.model.particles)
             worst = std::max(worst, gpu::length(s.at(node) - vec3(node.x, node.y, node.z)));
     }
     EXPECT_LT(worst, 0.02f * float(kPaper));
@@ -365,7 +365,7 @@ double springSpread(float share) {
         node.ring[0] = i ? i - 1 : i;
         node.ring[1] = i + 1 < kNodes ? i + 1 : i;
         node.ringLength[0] = gpu::packHalf2x16({i ? kRest : 0.0f, i + 1 < kNodes ? kRest : 0.0f});
-        model.nodes.push_back(node);
+        model.particles.push_back(node);
         model.embeddings[i].node = i;
         for (uint32_t& other : model.embeddings[i].ring) other = i;
     }
@@ -381,7 +381,7 @@ double springSpread(float share) {
         mesh::springStep(model, {}, stiffness, kSheetStep, {}, 0, state);
         if (i % 100) continue;
         for (uint32_t n = 0; n < kNodes; ++n)
-            worst = std::max(worst, double(std::fabs(state.shown[n].x - model.nodes[n].x)));
+            worst = std::max(worst, double(std::fabs(state.shown[n].x - model.particles[n].x)));
         if (!std::isfinite(worst) || worst > 1) return 1e9;
     }
     return worst;
@@ -401,19 +401,19 @@ TEST(DeformSprings, DecayMovesInwardsByTheLostDepth) {
     mesh::resetDeform(model, state);
     gpu::DeformObject object{};
     mesh::resetSoft(model, object, state);
-    const std::vector<float> lost(model.nodes.size(), 1e-5f);
+    const std::vector<float> lost(model.particles.size(), 1e-5f);
     const auto far = reference::makeFarLinks(domain, model, std::pmr::new_delete_resource());
     for (int i = 0; i < 128; ++i)
         mesh::springStep(model, far, gpu::springStiffness(), kSheetStep, lost, gpu::kSpringDamping,
                          state);
     double sum = 0;
-    for (const gpu::DeformParticle& node : model.nodes) {
+    for (const gpu::DeformParticle& node : model.particles) {
         const gpu::ShownVertex& v = state.shown[node.vertex];
         const float r = gpu::length(vec3(v.x, v.y, v.z));
         ASSERT_GT(r, 0.05f);
         sum += double(r);
     }
-    EXPECT_LT(sum / double(model.nodes.size()), 0.0995);
+    EXPECT_LT(sum / double(model.particles.size()), 0.0995);
 }
 
 }  // namespace

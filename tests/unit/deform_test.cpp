@@ -76,9 +76,9 @@ TEST(DeformModel, CornersOfABoxRecedeOnAllThreeFaces) {
     const Mesh box = makeCube(0.4, 4);
     const BurnDomain domain = bakeOf(box.input(64));
     const DeformModel model = modelOf(domain);
-    EXPECT_EQ(98u, model.nodes.size());  // 6 * 25, less 12 edges * 3, less 8 corners * 2
+    EXPECT_EQ(98u, model.particles.size());  // 6 * 25, less 12 edges * 3, less 8 corners * 2
     ASSERT_EQ(domain.vertices.size(), model.embeddings.size());
-    for (const gpu::DeformParticle& node : model.nodes) {
+    for (const gpu::DeformParticle& node : model.particles) {
         const float at[3] = {node.x, node.y, node.z}, out[3] = {node.outX, node.outY, node.outZ};
         for (int k = 0; k < 3; ++k) {
             const float side = at[k] > 0.199f ? -1.0f : (at[k] < -0.199f ? 1.0f : 0.0f);
@@ -100,18 +100,20 @@ TEST(DeformModel, BendingConstraintsAreMutualAndRunsAgree) {
         const BurnDomain domain = bakeOf(mesh->input(64));
         const DeformModel model = modelOf(domain);
         size_t armed = 0;
-        for (uint32_t i = 0; i < model.nodes.size(); ++i) {
-            const gpu::DeformParticle& node = model.nodes[i];
-            ASSERT_EQ(i, model.nodeOf[node.vertex]);
-            const gpu::DeformParticle& first = model.nodes[i / gpu::kDeformRun * gpu::kDeformRun];
+        for (uint32_t i = 0; i < model.particles.size(); ++i) {
+            const gpu::DeformParticle& node = model.particles[i];
+            ASSERT_EQ(i, model.particleOf[node.vertex]);
+            const gpu::DeformParticle& first =
+                model.particles[i / gpu::kDeformRun * gpu::kDeformRun];
             constexpr uint32_t kShared = (7u << gpu::kParticlePassesShift) | gpu::kParticleHasBends;
             EXPECT_EQ(first.flags & kShared, node.flags & kShared) << i;
             EXPECT_GE((node.flags >> gpu::kParticlePassesShift & 7u) * gpu::kLinksPerPass,
                       node.flags >> gpu::kParticleRingShift & 15u);
             for (uint32_t arm = 0; arm < 2 * gpu::kBendSets; ++arm) {
-                if (node.arms[arm] == kNone) continue;
-                const gpu::DeformParticle& other = model.nodes[model.nodeOf[node.arms[arm]]];
-                EXPECT_EQ(node.vertex, other.arms[arm ^ 1]);
+                if (node.bendEnds[arm] == kNone) continue;
+                const gpu::DeformParticle& other =
+                    model.particles[model.particleOf[node.bendEnds[arm]]];
+                EXPECT_EQ(node.vertex, other.bendEnds[arm ^ 1]);
                 EXPECT_EQ(node.bendLength[arm], other.bendLength[arm ^ 1]);
                 EXPECT_NEAR(arm < 4 ? model.span : 0.6f * model.span, node.bendLength[arm],
                             0.15f * model.span);
@@ -121,7 +123,7 @@ TEST(DeformModel, BendingConstraintsAreMutualAndRunsAgree) {
         if (mesh == &ball) {
             EXPECT_EQ(0u, armed);
         } else {
-            EXPECT_GT(armed, model.nodes.size() * 4);
+            EXPECT_GT(armed, model.particles.size() * 4);
         }
     }
 }
@@ -130,7 +132,7 @@ TEST(RecedingSolid, VerticesSplitBySeamsStayTogether) {
     const Mesh sphere = randomUnwrap(makeCube(0.4, 12, true), 7, 20);
     const BurnDomain domain = bakeOf(sphere.input(128));
     const DeformModel model = modelOf(domain);
-    ASSERT_LT(model.nodes.size(), domain.vertices.size());
+    ASSERT_LT(model.particles.size(), domain.vertices.size());
     DeformState state = restOf(model);
     std::vector<uint32_t> states = allLit(domain);
     for (uint32_t i = 0; i < states.size(); ++i)
@@ -141,7 +143,7 @@ TEST(RecedingSolid, VerticesSplitBySeamsStayTogether) {
         mesh::skinVertices(model, state);
         for (uint32_t v = 0; v < domain.vertices.size(); ++v) {
             const gpu::ShownVertex& a = state.shown[v];
-            const gpu::ShownVertex& b = state.shown[model.nodes[model.nodeOf[v]].vertex];
+            const gpu::ShownVertex& b = state.shown[model.particles[model.particleOf[v]].vertex];
             ASSERT_EQ(0, std::memcmp(&a, &b, 12)) << v;
         }
     }
@@ -232,25 +234,25 @@ TEST(RecedingSolid, SlabsOpenOnBothSidesTogether) {
             states[i] = 1 + domain.texels[i].x * 4u;
     uint32_t opened = 0;
     double worst = 0;
-    std::vector<float> openAt(model.nodes.size(), 0);
+    std::vector<float> openAt(model.particles.size(), 0);
     DeformState state = restOf(model);
     const auto seconds = [](uint32_t ticks) { return float(ticks) / float(kTicksPerSecond); };
     for (uint32_t now = 1; now < uint32_t(1000 * kTicksPerSecond); now += kTicksPerSecond) {
         mesh::recede(model, object, states, now, state);
-        for (size_t i = 0; i < model.nodes.size(); ++i) {
-            const gpu::DeformParticle& node = model.nodes[i];
+        for (size_t i = 0; i < model.particles.size(); ++i) {
+            const gpu::DeformParticle& node = model.particles[i];
             const uint32_t t = states[node.texels[0]];
             const float age = now > t ? seconds(now - t) : 0;
             if (openAt[i] == 0 && age + state.shown[node.vertex].behind >= whole)
                 openAt[i] = seconds(now);
         }
     }
-    const size_t half = model.nodes.size() / 2;
+    const size_t half = model.particles.size() / 2;
     for (size_t i = 0; i < half; ++i) {
-        ASSERT_NE(kNone, model.nodes[i].opposite);
+        ASSERT_NE(kNone, model.particles[i].opposite);
         // The rule, from both sides' own ticks.
-        const float a = seconds(states[model.nodes[i].texels[0]]);
-        const float b = seconds(states[model.nodes[i].opposite]);
+        const float a = seconds(states[model.particles[i].texels[0]]);
+        const float b = seconds(states[model.particles[i].opposite]);
         const float rule = std::max((whole + a + b) / 2, std::max(a, b));
         worst = std::max(worst, double(std::fabs(openAt[i] - rule) / rule));
         ++opened;
@@ -259,13 +261,13 @@ TEST(RecedingSolid, SlabsOpenOnBothSidesTogether) {
     EXPECT_LT(worst, 0.05);
     // Both lit together: 462 s on either side.
     const std::vector<uint32_t> together = allLit(domain);
-    for (const gpu::DeformParticle& node : model.nodes) {
+    for (const gpu::DeformParticle& node : model.particles) {
         state = restOf(model);
         mesh::recede(model, object, together, 1 + uint32_t(439 * kTicksPerSecond), state);
         EXPECT_LT(439 + state.shown[node.vertex].behind, whole);
         mesh::recede(model, object, together, 1 + uint32_t(485 * kTicksPerSecond), state);
         EXPECT_GE(485 + state.shown[node.vertex].behind, whole);
-        if (&node - model.nodes.data() > 4) break;
+        if (&node - model.particles.data() > 4) break;
     }
 }
 

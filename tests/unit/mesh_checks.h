@@ -123,10 +123,10 @@ inline void expectSound(const BurnDomain& d) {
     size_t listed = 0;
     for (uint32_t t = 0; t < d.tileCount(); ++t) {
         const mesh::TileStatic& tile = d.tiles[t];
-        ASSERT_LE(size_t(tile.dependentStart) + tile.dependentCount, d.readers.size());
+        ASSERT_LE(size_t(tile.dependentStart) + tile.dependentCount, d.dependents.size());
         listed += tile.dependentCount;
         for (uint32_t r = 0; r < tile.dependentCount; ++r)
-            unread += reads.count({t, d.readers[tile.dependentStart + r]}) == 0;
+            unread += reads.count({t, d.dependents[tile.dependentStart + r]}) == 0;
         unread += maskOf(tile.seamMaskLow, tile.seamMaskHigh) != seam[t];
     }
     EXPECT_EQ(reads.size(), listed) << "dependent tiles by links, and those listed";

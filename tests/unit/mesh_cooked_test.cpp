@@ -63,7 +63,7 @@ TEST(MeshCooked, RoundTrips) {
     EXPECT_TRUE(sameBytes(a.slowness, b.slowness));
     EXPECT_TRUE(sameBytes(a.triangleOf, b.triangleOf));
     EXPECT_TRUE(sameBytes(a.links, b.links));
-    EXPECT_TRUE(sameBytes(a.readers, b.readers));
+    EXPECT_TRUE(sameBytes(a.dependents, b.dependents));
     EXPECT_TRUE(sameBytes(a.tiles, b.tiles));
     EXPECT_TRUE(sameBytes(a.tileBounds, b.tileBounds));
     EXPECT_TRUE(sameBytes(a.vertices, b.vertices));
@@ -184,7 +184,7 @@ uint64_t touch(const BurnDomain& d) {
     }
     for (const mesh::TileStatic& tile : d.tiles)
         for (uint32_t r = 0; r < tile.dependentCount; ++r)
-            sum += d.tiles.at(d.readers.at(tile.dependentStart + r)).rimBase;
+            sum += d.tiles.at(d.dependents.at(tile.dependentStart + r)).rimBase;
     for (uint32_t index : d.indices) sum += d.vertices.at(index).tint;
     return sum;
 }

@@ -317,6 +317,7 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
                                      bool dense) noexcept {
     const CpuObject& object = ownerOf(worldTile);
     TileState& tile = tiles[worldTile];
+    FW_ASSERT(listOut.size() < listOut.capacity(), "%zu tiles wait", listOut.size());
     const BurnObject& record = object.record;
     const bool listed = (tile.flag & kTileListed) != 0;
     // A tile of a baked burn is due once the burn goes live.
@@ -430,6 +431,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             const uint32_t lane = uint32_t(std::countr_zero(rest));
             object.state[texels[lane]] = scratch[i * 64 + lane];
         }
+        FW_ASSERT((result.lit & ~result.changed) == 0, "tile %u", worldTile);
         const uint32_t end =
             iterationEnd(step.now, iteration, step.substepShift, object.record.substepShift);
         tile.lastChange = end;
@@ -522,6 +524,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     auto object = core::Owned<CpuObject>::make(s.memory, s.memory);
     const mesh::BurnDomain& domain = *s.meshes[init.mesh];
     const uint32_t texels = domain.texelCount();
+    FW_ASSERT(texels > 0 && texels % mesh::kTileLanes == 0, "%u texels", texels);
     object->mesh = init.mesh;
     object->domain = &domain;
     object->record = init.record;
@@ -711,6 +714,7 @@ void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& sto
     readback.lights = store.lights;
     readback.fields = store.fields;
     readback.rooms = store.rooms;
+    FW_ASSERT(store.lights.size() <= maxLights, "%zu lights", store.lights.size());
     readback.frontTiles = uint32_t(list.size()) + goneListed;
     readback.runTiles = uint32_t(std::min<uint64_t>(runTiles, 0xFFFFFFFFu));
     readback.burningTiles = reducedBurning;

@@ -9,6 +9,7 @@ void CpuBackend::createField(uint32_t slot, const FieldRules& rules,
     auto made = core::Owned<CpuField>::make(s.memory, s.memory);
     field::startField(made->field, rules.width, rules.height);
     field::maskField(made->field, masks);
+    FW_ASSERT(masks.size() == size_t(rules.width) * rules.height, "%zu masks", masks.size());
     made->rules = rules;
     if (slot >= s.fields.size()) s.fields.resize(slot + 1);
     s.fields[slot] = std::move(made);

@@ -62,11 +62,6 @@ uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
     return after;
 }
 
-void CpuBackend::State::heatComes(uint32_t worldTile, uint32_t flux) noexcept {
-    FW_ASSERT(flux <= kMaxFlux, "flux %u", flux);
-    listHot(worldTile, workOfFlux(flux) == kWorkAlways ? kTileWarm : 0u);
-}
-
 uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
     const TileState& tile = tiles[worldTile];
     const uint32_t local = at(tile.object).localTileOf(worldTile);
@@ -90,6 +85,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     CpuObject& object = at(tile.object);
     const mesh::BurnDomain& domain = *object.domain;
     const uint32_t local = object.localTileOf(worldTile);
+    FW_ASSERT(object.heat.size() == object.state.size(), "object %u has no heat", tile.object);
     const mesh::TileTexels texels = domain.texelsOf(local);
     const TileHeat comes = tileHeat[worldTile];
     const bool held = !mayBurn(worldTile);
@@ -127,6 +123,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     if (left != 0) {
         const bool warm = (left & kWorkAlways) != 0;
         tile.flag = warm ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
+        FW_ASSERT((tile.flag & kTileHot) != 0, "tile %u is not hot", worldTile);
         append(hotOut, worldTile);
     } else {
         tile.flag &= ~(kTileHot | kTileWarm);

@@ -68,6 +68,7 @@ BurnTile CpuBackend::State::burnTileOf(uint32_t worldTile, uint32_t now, bool no
     tile.tile = local;
     tile.texels = count;
     if (count == 0) return tile;
+    FW_ASSERT(count <= mesh::kTileLanes, "%u texels", count);
     const float inverse = 1.0f / float(count);
     const BurnObject& record = object.record;
     vec4 rest(0, 0, 0, 1);
@@ -105,6 +106,8 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
         CpuObject& object = at(tile.object);
         object.counters.burning += tile.texels;
         ++object.counters.burningTiles;
+        FW_ASSERT(tile.texels <= object.counters.ignited, "%u of %u burn", tile.texels,
+                  object.counters.ignited);
         burnTiles.push_back(tile);
     }
     burnList.resize(kept);

@@ -106,6 +106,8 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
         std::copy(image.heat.begin(), image.heat.end(), object.heat.begin());
         const uint32_t base = object.record.worldTileBase;
         for (uint32_t local = 0; local < object.record.tileCount; ++local) {
+            FW_ASSERT((image.tiles[local].flag & kTileHot) == 0 || !object.heat.empty(),
+                      "tile %u of an object without heat is hot", local);
             const uint32_t kept = image.tiles[local].flag & kTileKept;
             const uint32_t worldTile = base + local;
             s.tiles[worldTile].lastChange = image.tiles[local].lastChange;

@@ -177,8 +177,6 @@ struct CpuBackend::State {
     // Of objects with heat: the tile's temperature, water or flux changes from now on.
     void hot(uint32_t worldTile) noexcept;
     void listHot(uint32_t worldTile, uint32_t bits) noexcept;
-    // The flux onto the tile changed, at one of its turns.
-    void heatComes(uint32_t worldTile, uint32_t flux) noexcept;
     // A frame: reserves what it needs (throws), runs a step, fills the readback.
     ReadbackStore& reserveReadback(const FramePlan& plan);
     void runStep(const StepPlan& step) noexcept;
@@ -228,42 +226,17 @@ struct CpuBackend::State {
     void placeExchangeObject(const ExchangeUpdate& update) noexcept;
     void reserveOcclusion(const OcclusionUpdate& update);  // throws std::bad_alloc
     void setOcclusionPush(const OcclusionUpdate& update) noexcept;
-    [[nodiscard]] bool isOccluderStanding(uint32_t what, uint32_t texel,
-                                          uint32_t now) const noexcept;
-    [[nodiscard]] bool isOccluded(const OcclusionEnds& ends, const ivec3& a, const ivec3& b,
-                                  const ExchangePush& rules) const noexcept;
     void exchange(const ExchangePush& given, uint32_t now) noexcept;
-    void sumSources() noexcept;
-    void settleSources(const ExchangePush& rules) noexcept;
-    void warmAll(const ExchangePush& rules) noexcept;
-    [[nodiscard]] uint32_t neighbourOf(const CpuObject& object, uint32_t n) const noexcept {
-        FW_ASSERT(object.remote.neighbourFirst + n < neighbours.size(), "neighbour %u of %zu",
-                  object.remote.neighbourFirst + n, neighbours.size());
-        return neighbours[object.remote.neighbourFirst + n];
-    }
     [[nodiscard]] const ExchangeTile& remoteTileOf(const CpuObject& object,
                                                    uint32_t local) const noexcept {
         FW_ASSERT(object.mesh < exchangeTiles.size() && local < exchangeTiles[object.mesh].size(),
                   "tile %u of mesh %u", local, object.mesh);
         return exchangeTiles[object.mesh][local];
     }
-    void gatherSources(uint32_t slot, const ExchangePush& rules) noexcept;
-    void warmTile(uint32_t slot, uint32_t local, const ExchangePush& rules) noexcept;
-    void contacts(const ExchangePush& rules) noexcept;
     void parts(const ExchangePush& rules) noexcept;
-    struct Landing {  // of an ember; kNoneTexel: it falls on none
-        uint32_t object = kNoneTexel, tile = kNoneTexel;
-    };
     template <class Each>
-    void eachEmber(const ExchangePush& rules, Each&& each) noexcept;
-    void emberPaths(const ExchangePush& rules) noexcept;
-    void embers(const ExchangePush& rules) noexcept;
+    void eachEmber(Each&& each) noexcept;
     bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
-    Landing landsOn(const ivec3& place, uint32_t axis) const noexcept;
-    void landEmber(const FireSource& source, const Ember& ember, const Landing& to, uint32_t axis,
-                   const ExchangePush& rules) noexcept;
-    static uint32_t nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
-                                uint32_t axis) noexcept;
     void litFrom(CpuObject& object, uint32_t by) noexcept;
     // A baked burn that the object plays ends with the step or exchange that ends at `end`.
     static void disturb(CpuObject& object, uint32_t end) noexcept;

@@ -63,7 +63,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.meshTiles = allocate(kPoolMeshTiles, fresh.tiles);
     fresh.slowness = allocate(kPoolSlowness, fresh.tiles);
     fresh.links = allocate(kPoolLinks, domain.links.size() / 8);
-    fresh.readers = allocate(kPoolDependents, domain.readers.size());
+    fresh.readers = allocate(kPoolDependents, domain.dependents.size());
     fresh.vertexRange = allocate(kPoolVertices, fresh.vertices);
     fresh.indexRange = allocate(kPoolIndices, fresh.indices);
     const auto bytesOf = [](const auto&... parts) {
@@ -71,7 +71,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     };
     PendingUpload& upload = s.scene.uploads.stage(
         bytesOf(domain.texels, domain.normals, domain.tiles, exchangeTiles, domain.slowness,
-                domain.links, domain.readers, domain.vertices, domain.indices),
+                domain.links, domain.dependents, domain.vertices, domain.indices),
         "mesh staging");
     static_assert(sizeof(mesh::TexelPosition) == 8 && sizeof(mesh::TileStatic) == 32);
     const auto add = [&](uint32_t resource, const BufferRange& range, uint64_t perUnit,
@@ -84,7 +84,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     add(FW_BIND_EXCHANGE_TILES, fresh.meshTiles, 1, exchangeTiles);
     add(FW_BIND_SLOWNESS, fresh.slowness, kTileTexels, domain.slowness);
     add(FW_BIND_LINKS, fresh.links, 8, domain.links);
-    add(FW_BIND_DEPENDENTS, fresh.readers, 1, domain.readers);
+    add(FW_BIND_DEPENDENTS, fresh.readers, 1, domain.dependents);
     // In the order in which the device has them.
     const auto place = [&](uint32_t resource, const BufferRange& range, const auto& data) {
         return upload.region(resource, range.first() * sizeof(data[0]), bytesOf(data));

@@ -20,7 +20,7 @@ struct MeshAdditions {
 void stageDeformModel(BackendState& s, const mesh::BurnDomain& domain,
                       const mesh::DeformModel& model, const MeshAdditions& added) {
     const DrawnOrder order(domain, s.memory);
-    const uint64_t particleBytes = model.nodes.size() * sizeof(DeviceParticle);
+    const uint64_t particleBytes = model.particles.size() * sizeof(DeviceParticle);
     const uint64_t embeddingBytes = model.embeddings.size() * sizeof(DeformEmbedding);
     PendingUpload& upload =
         s.scene.uploads.stage(particleBytes + embeddingBytes, "deformation staging");
@@ -30,10 +30,10 @@ void stageDeformModel(BackendState& s, const mesh::BurnDomain& domain,
     std::byte* to =
         upload.region(FW_BIND_DEFORM_PARTICLES,
                       uint64_t(added.particles.first()) * sizeof(DeviceParticle), particleBytes);
-    for (uint32_t i = 0; i < model.nodes.size(); ++i) {
-        DeviceParticle particle = mesh::deviceNode(model, i);
+    for (uint32_t i = 0; i < model.particles.size(); ++i) {
+        DeviceParticle particle = mesh::deviceParticle(model, i);
         number(particle.vertex);
-        mesh::putQuads(particle, i, model.nodes.size(), to);
+        mesh::putQuads(particle, i, model.particles.size(), to);
     }
     to =
         upload.region(FW_BIND_DEFORM_EMBEDDINGS,
@@ -124,7 +124,7 @@ void allocateRefinement(BackendState& s, const ObjectInit& init, const MeshEntry
 void allocateDeformation(BackendState& s, const ObjectInit& init, const MeshEntry& mesh,
                          ObjectEntry& fresh, MeshAdditions& added, uint64_t last) {
     const mesh::DeformModel& model = *init.deformModel;
-    const auto count = uint32_t(model.nodes.size());
+    const auto count = uint32_t(model.particles.size());
     fresh.deforms.range = s.buffers.allocate(kPoolDeformers, 1, last);
     if (isSheet(init)) fresh.soft = s.buffers.allocate(kPoolSoft, count, last);
     // And once more for the inner skin.

@@ -1,7 +1,7 @@
 #include "mesh/deform/model.h"
 
 #include "mesh/bake.h"
-#include "mesh/deform/arms.h"
+#include "mesh/deform/bends.h"
 #include "mesh/surface.h"
 
 #include <algorithm>
@@ -22,14 +22,16 @@ using gpu::kDeformTexels;
 
 constexpr double kAltitudeShare = 0.5;  // of the lowest altitude of the triangles around
 constexpr double kNoWall = 1e30;
-constexpr size_t kMostSteps = 256;  // triangles around one node that are read
+constexpr size_t kMostSteps = 256;  // triangles around one particle that are read
 constexpr double kThickest = 0.25;  // m: walls farther apart never burn through together
 
 glm::dvec3 placeOf(const RenderVertex& v) { return glm::dvec3(v.place()); }
-glm::dvec3 placeOf(const DeformParticle& p) { return glm::dvec3(glm::vec3(p.x, p.y, p.z)); }
+glm::dvec3 restOf(const DeformParticle& p) { return glm::dvec3(glm::vec3(p.x, p.y, p.z)); }
 
 // A vertex's place on Morton's curve through the mesh's bounds.
 uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
+    FW_ASSERT(vertex < domain.vertices.size(), "%u of %zu vertices", vertex,
+              domain.vertices.size());
     uint32_t code = 0;
     float side = 1e-30f;
     for (size_t k = 0; k < 3; ++k)
@@ -42,7 +44,7 @@ uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
     return code;
 }
 
-// Makes one node of all vertices with the same position; the lowest vertex keeps it.
+// Makes one particle of all vertices with the same position; the lowest vertex keeps it.
 void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory) {
     const auto count = uint32_t(domain.vertices.size());
     std::pmr::vector<uint32_t> order(count, memory);
@@ -61,29 +63,29 @@ void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resourc
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return std::pair(alongCurve(domain, a), a) < std::pair(alongCurve(domain, b), b);
     });
-    model.nodeOf.resize(count);
+    model.particleOf.resize(count);
     for (const uint32_t i : order) {
         if (keeper[i] != i) continue;
-        model.nodeOf[i] = uint32_t(model.nodes.size());
-        DeformParticle node{};
+        model.particleOf[i] = uint32_t(model.particles.size());
+        DeformParticle particle{};
         const RenderVertex& v = domain.vertices[i];
-        node.x = v.position[0];
-        node.y = v.position[1];
-        node.z = v.position[2];
-        node.vertex = i;
-        node.opposite = kNone;
-        std::fill(std::begin(node.texels), std::end(node.texels), kNone);
-        std::fill(std::begin(node.ring), std::end(node.ring), i);
-        model.nodes.push_back(node);
+        particle.x = v.position[0];
+        particle.y = v.position[1];
+        particle.z = v.position[2];
+        particle.vertex = i;
+        particle.opposite = kNone;
+        std::fill(std::begin(particle.texels), std::end(particle.texels), kNone);
+        std::fill(std::begin(particle.ring), std::end(particle.ring), i);
+        model.particles.push_back(particle);
     }
-    for (uint32_t i = 0; i < count; ++i) model.nodeOf[i] = model.nodeOf[keeper[i]];
+    for (uint32_t i = 0; i < count; ++i) model.particleOf[i] = model.particleOf[keeper[i]];
 }
 
-struct Step {  // one triangle around a node: from one neighbour to the next
+struct Step {  // one triangle around a particle: from one neighbour to the next
     uint32_t from, to;
 };
 
-// Joins the steps around a node to its longest walk; true: the walk closes.
+// Joins the steps around a particle to its longest walk; true: the walk closes.
 bool walk(std::pmr::vector<Step>& steps, std::pmr::vector<uint32_t>& out,
           std::pmr::vector<uint32_t>& best) {
     best.clear();
@@ -125,8 +127,9 @@ class Builder {
     Builder(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory)
         : domain_(domain),
           model_(model),
-          corners_(groupBy(uint32_t(model.nodes.size()), uint32_t(domain.indices.size()), memory,
-                           [&](uint32_t i) { return model.nodeOf[domain.indices[i]]; })),
+          corners_(groupBy(uint32_t(model.particles.size()), uint32_t(domain.indices.size()),
+                           memory,
+                           [&](uint32_t i) { return model.particleOf[domain.indices[i]]; })),
           triangleTexels_(groupBy(uint32_t(domain.indices.size() / 3), domain.texelCount(), memory,
                                   [&](uint32_t texel) {
                                       return domain.real(texel) ? domain.triangleOf[texel] : kNone;
@@ -137,7 +140,7 @@ class Builder {
           texels_(memory) {}
 
     void run() {
-        for (uint32_t i = 0; i < model_.nodes.size(); ++i) {
+        for (uint32_t i = 0; i < model_.particles.size(); ++i) {
             offset(i);
             sample(i);
             neighbours(i);
@@ -154,16 +157,16 @@ class Builder {
         return placeOf(domain_.cornerOf(triangle, corner % 3));
     }
     [[nodiscard]] uint32_t keeperAt(uint32_t triangle, uint32_t corner) const {
-        return model_.nodes[model_.nodeOf[vertexAt(triangle, corner)]].vertex;
+        return model_.particles[model_.particleOf[vertexAt(triangle, corner)]].vertex;
     }
     [[nodiscard]] glm::dvec3 areaNormal(uint32_t triangle) const {  // twice the area long
         const glm::dvec3 a = cornerPlace(triangle, 0);
         return glm::cross(cornerPlace(triangle, 1) - a, cornerPlace(triangle, 2) - a);
     }
 
-    // Direction in which the node recedes (see Faces), and its limit by the triangles around.
+    // Direction in which the particle recedes (see Faces), and its limit by the triangles around.
     void offset(uint32_t number) {
-        DeformParticle& node = model_.nodes[number];
+        DeformParticle& particle = model_.particles[number];
         Faces faces;
         double altitude = 1e30, area = 0;
         for (const uint32_t corner : corners_.of(number)) {
@@ -185,20 +188,20 @@ class Builder {
                     longest, glm::length(cornerPlace(triangle, k) - cornerPlace(triangle, k + 1)));
             altitude = std::min(altitude, size / std::max(longest, 1e-30));
         }
-        node.area = float(area);
+        particle.area = float(area);
         if (!(faces.weight > 0)) return;
         const glm::dvec3 o = faces.offset();
         if (o == glm::dvec3(0)) return;  // the two sides of a sheet
-        node.outX = float(o.x);
-        node.outY = float(o.y);
-        node.outZ = float(o.z);
-        node.limit = float(kAltitudeShare * altitude / std::max(glm::length(o), 1e-6));
+        particle.outX = float(o.x);
+        particle.outY = float(o.y);
+        particle.outZ = float(o.z);
+        particle.limit = float(kAltitudeShare * altitude / std::max(glm::length(o), 1e-6));
     }
 
-    // The texels that a node samples, spread over its ring like the texels of one mip of its burn
-    // map; and the wall behind.
+    // The texels that a particle samples, spread over its ring like the texels of one mip of its
+    // burn map; and the wall behind.
     void sample(uint32_t number) {
-        DeformParticle& node = model_.nodes[number];
+        DeformParticle& particle = model_.particles[number];
         texels_.clear();
         uint32_t material = 0;
         for (const uint32_t corner : corners_.of(number)) {
@@ -207,7 +210,7 @@ class Builder {
             const std::span<const uint32_t> own = triangleTexels_.of(triangle);
             texels_.insert(texels_.end(), own.begin(), own.end());
         }
-        node.flags = material & 7u;
+        particle.flags = material & 7u;
         const uint32_t mip = gpu::mipOfRing(uint32_t(texels_.size()), kDeformTexels);
         const uint32_t mask = (1u << mip) - 1, half = mask / 2;
         const auto central = [&](uint32_t texel) {
@@ -218,25 +221,25 @@ class Builder {
         const auto middles = size_t(std::count_if(texels_.begin(), texels_.end(), central));
         const size_t from = middles >= kDeformTexels / 2 ? middles : texels_.size();
         const size_t taken = std::min<size_t>(from, kDeformTexels);
-        for (size_t i = 0; i < taken; ++i) node.texels[i] = texels_[i * from / taken];
-        const float place[3] = {node.x, node.y, node.z};
-        if (taken == 0) node.texels[0] = nearestTexel(domain_, place, 1e6f);
+        for (size_t i = 0; i < taken; ++i) particle.texels[i] = texels_[i * from / taken];
+        const float place[3] = {particle.x, particle.y, particle.z};
+        if (taken == 0) particle.texels[0] = nearestTexel(domain_, place, 1e6f);
 
         double thin = kNoWall;
-        for (const uint32_t texel : node.texels)
+        for (const uint32_t texel : particle.texels)
             if (texel != kNone && domain_.thickness[texel] != 0xFFFF)
                 thin = std::min(thin, double(domain_.thickness[texel]) * 1e-4);
-        const glm::dvec3 out(double(node.outX), double(node.outY), double(node.outZ));
+        const glm::dvec3 out(double(particle.outX), double(particle.outY), double(particle.outZ));
         const double stretch = std::max(glm::length(out), 1e-6);
-        node.limit = float(std::min(double(node.limit), kDepthShare * thin / stretch));
-        if (thin > kThickest || node.texels[0] == kNone) return;
-        const glm::dvec3 behind = placeOf(node) + out / stretch * thin;
+        particle.limit = float(std::min(double(particle.limit), kDepthShare * thin / stretch));
+        if (thin > kThickest || particle.texels[0] == kNone) return;
+        const glm::dvec3 behind = restOf(particle) + out / stretch * thin;
         const float point[3] = {float(behind.x), float(behind.y), float(behind.z)};
         const float reach = float(0.5 * thin) + domain_.texelSide;
         const uint32_t texel = nearestTexel(domain_, point, reach);
         if (texel == kNone) return;
         const glm::vec3 facing = gpu::unpackDirection(domain_.normals[texel]);
-        if (glm::dot(facing, glm::vec3(out / stretch)) > 0.3f) node.opposite = texel;
+        if (glm::dot(facing, glm::vec3(out / stretch)) > 0.3f) particle.opposite = texel;
     }
 
     // Adds the step past `center` along the far side of a corner's triangle.
@@ -258,68 +261,70 @@ class Builder {
         // Repeats the last one: loops over eight neighbours see no triangle between equal ones.
         for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
             ring[i] = closes ? ring[0] : ring[kept - 1];
+        FW_ASSERT(kept <= kDeformRing && (!closes || kept > 1), "a ring of %zu", kept);
         return {closes, kept};
     }
 
-    // Neighbours in their order around the node.
+    // Neighbours in their order around the particle.
     void neighbours(uint32_t number) {
-        DeformParticle& node = model_.nodes[number];
+        DeformParticle& particle = model_.particles[number];
         steps_.clear();
-        for (const uint32_t corner : corners_.of(number)) addStep(corner, node.vertex);
-        const auto [closes, kept] = fillRing(node.ring, 0);
-        node.flags |= (closes ? gpu::kParticleClosed : 0u) | uint32_t(kept)
-                                                                 << gpu::kParticleRingShift;
+        for (const uint32_t corner : corners_.of(number)) addStep(corner, particle.vertex);
+        const auto [closes, kept] = fillRing(particle.ring, 0);
+        particle.flags |= (closes ? gpu::kParticleClosed : 0u) | uint32_t(kept)
+                                                                     << gpu::kParticleRingShift;
     }
-    [[nodiscard]] float restLength(const DeformParticle& node, uint32_t vertex) const {
-        return float(glm::length(placeOf(model_.nodes[model_.nodeOf[vertex]]) - placeOf(node)));
+    [[nodiscard]] float restLength(const DeformParticle& particle, uint32_t vertex) const {
+        return float(
+            glm::length(restOf(model_.particles[model_.particleOf[vertex]]) - restOf(particle)));
     }
     // A link that only one end lists gets no length: forces need both ends.
     void lengths() {
-        for (DeformParticle& node : model_.nodes) {
+        for (DeformParticle& particle : model_.particles) {
             glm::dvec3 mean(0), turned(0), before(0), first(0);
             double links = 0;
             const auto mutual = [&](uint32_t vertex) {
-                const uint32_t* list = model_.nodes[model_.nodeOf[vertex]].ring;
-                return vertex != node.vertex &&
-                       std::find(list, list + kDeformRing, node.vertex) != list + kDeformRing;
+                const uint32_t* list = model_.particles[model_.particleOf[vertex]].ring;
+                return vertex != particle.vertex &&
+                       std::find(list, list + kDeformRing, particle.vertex) != list + kDeformRing;
             };
             float ring[kDeformRing]{};
-            const uint32_t count = node.flags >> gpu::kParticleRingShift & 15u;
+            const uint32_t count = particle.flags >> gpu::kParticleRingShift & 15u;
             for (uint32_t i = 0; i < kDeformRing; ++i) {
-                const glm::dvec3 arm = placeOf(domain_.vertices[node.ring[i]]) -
-                                       placeOf(domain_.vertices[node.vertex]);
+                const glm::dvec3 arm = placeOf(domain_.vertices[particle.ring[i]]) -
+                                       placeOf(domain_.vertices[particle.vertex]);
                 turned += glm::cross(before, arm);
                 before = arm;
                 if (i == 0) first = arm;
-                if (i < count && mutual(node.ring[i])) {
-                    ring[i] = restLength(node, node.ring[i]);
+                if (i < count && mutual(particle.ring[i])) {
+                    ring[i] = restLength(particle, particle.ring[i]);
                     mean += arm;
                     links += 1;
                 }
             }
-            if (node.flags & gpu::kParticleClosed) turned += glm::cross(before, first);
+            if (particle.flags & gpu::kParticleClosed) turned += glm::cross(before, first);
             const glm::dvec3 normal = unitOr(turned, glm::dvec3(0));
             mean /= std::max(links, 1.0);
-            node.rise = float(glm::dot(mean, normal));
-            const bool whole = (node.flags & gpu::kParticleClosed) && links == double(count);
+            particle.rise = float(glm::dot(mean, normal));
+            const bool whole = (particle.flags & gpu::kParticleClosed) && links == double(count);
             if (whole &&
                 glm::length(mean - normal * glm::dot(mean, normal)) < 0.06 * double(ring[0]))
-                node.flags |= gpu::kParticleEven;
+                particle.flags |= gpu::kParticleEven;
             for (uint32_t i = 0; i < kDeformRing / 2; ++i)
-                node.ringLength[i] = glm::packHalf2x16({ring[i * 2], ring[i * 2 + 1]});
+                particle.ringLength[i] = glm::packHalf2x16({ring[i * 2], ring[i * 2 + 1]});
         }
     }
 
     // A drawn normal turns with the triangles that share it.
     void embed(uint32_t vertex) {
         const RenderVertex& v = domain_.vertices[vertex];
-        const uint32_t node = model_.nodeOf[vertex];
+        const uint32_t particle = model_.particleOf[vertex];
         DeformEmbedding made{};
-        made.node = model_.nodes[node].vertex;
+        made.node = model_.particles[particle].vertex;
         made.normal = v.normal;
         steps_.clear();
         glm::dvec3 face(0);
-        for (const uint32_t corner : corners_.of(node))
+        for (const uint32_t corner : corners_.of(particle))
             if (domain_.vertices[domain_.indices[corner]].normal == v.normal)
                 addStep(corner, made.node);
         std::fill_n(made.ring, kDeformRing, made.node);
@@ -343,44 +348,51 @@ class Builder {
 
     const BurnDomain& domain_;
     DeformModel& model_;
-    Groups corners_;         // by node: triangle * 3 + corner
+    Groups corners_;         // by particle: triangle * 3 + corner
     Groups triangleTexels_;  // by triangle: its real texels
     std::pmr::vector<Step> steps_;
     std::pmr::vector<uint32_t> walk_, best_, texels_;
 };
 
-// Sorts nodes by their number of neighbours within each group, and notes per run of nodes the turns
-// that it takes to read them and whether any node has arms. Device lanes that share a run then
-// leave the loop over neighbours together.
+// Sorts particles by their number of neighbours within each group, and notes per run of particles
+// the turns that it takes to read them and whether any has bending constraints. Device lanes that
+// share a run then leave the loop over neighbours together.
 void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
-    const size_t count = model.nodes.size();
-    const auto turnsOf = [](const DeformParticle& node) {
-        return std::max(((node.flags >> gpu::kParticleRingShift & 15u) + 1) / gpu::kLinksPerPass,
-                        1u);
+    const size_t count = model.particles.size();
+    const auto turnsOf = [](const DeformParticle& particle) {
+        return std::max(
+            ((particle.flags >> gpu::kParticleRingShift & 15u) + 1) / gpu::kLinksPerPass, 1u);
     };
     std::pmr::vector<uint32_t> order(count, memory), moved(count, memory);
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        return std::tuple(a / gpu::kDeformGroup, turnsOf(model.nodes[a]), a) <
-               std::tuple(b / gpu::kDeformGroup, turnsOf(model.nodes[b]), b);
+        return std::tuple(a / gpu::kDeformGroup, turnsOf(model.particles[a]), a) <
+               std::tuple(b / gpu::kDeformGroup, turnsOf(model.particles[b]), b);
     });
     std::pmr::vector<DeformParticle> sorted(memory);
     sorted.reserve(count);
     for (const uint32_t i : order) {
         moved[i] = uint32_t(sorted.size());
-        sorted.push_back(model.nodes[i]);
+        sorted.push_back(model.particles[i]);
     }
-    model.nodes.swap(sorted);
-    for (uint32_t& node : model.nodeOf) node = moved[node];
+    FW_ASSERT(std::is_sorted(order.begin(), order.end(),
+                             [](uint32_t a, uint32_t b) {
+                                 return a / gpu::kDeformGroup < b / gpu::kDeformGroup;
+                             }),
+              "a particle left its group");
+    model.particles.swap(sorted);
+    for (uint32_t& particle : model.particleOf) particle = moved[particle];
     for (size_t first = 0; first < count; first += gpu::kDeformRun) {
-        const std::span<DeformParticle> run(model.nodes.data() + first,
+        const std::span<DeformParticle> run(model.particles.data() + first,
                                             std::min<size_t>(gpu::kDeformRun, count - first));
-        uint32_t turns = 1, arms = 0;
-        for (const DeformParticle& node : run) {
-            turns = std::max(turns, turnsOf(node));
-            for (const uint32_t arm : node.arms) arms |= arm == kNone ? 0 : gpu::kParticleHasBends;
+        uint32_t turns = 1, bends = 0;
+        for (const DeformParticle& particle : run) {
+            turns = std::max(turns, turnsOf(particle));
+            for (const uint32_t end : particle.bendEnds)
+                bends |= end == kNone ? 0 : gpu::kParticleHasBends;
         }
-        for (DeformParticle& node : run) node.flags |= arms | turns << gpu::kParticlePassesShift;
+        for (DeformParticle& particle : run)
+            particle.flags |= bends | turns << gpu::kParticlePassesShift;
     }
 }
 
@@ -396,38 +408,39 @@ DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource*
     return model;
 }
 
-gpu::DeviceParticle deviceNode(const DeformModel& model, uint32_t number) noexcept {
-    FW_ASSERT(number < model.nodes.size(), "%u of %zu nodes", number, model.nodes.size());
-    const DeformParticle& node = model.nodes[number];
+gpu::DeviceParticle deviceParticle(const DeformModel& model, uint32_t number) noexcept {
+    FW_ASSERT(number < model.particles.size(), "%u of %zu particles", number,
+              model.particles.size());
+    const DeformParticle& particle = model.particles[number];
     gpu::DeviceParticle made{};
-    made.vertex = node.vertex;
-    made.flags = node.flags;
-    made.rise = node.rise;
-    made.opposite = node.opposite;
+    made.vertex = particle.vertex;
+    made.flags = particle.flags;
+    made.rise = particle.rise;
+    made.opposite = particle.opposite;
     const auto linked = [&](uint32_t vertex) {
-        FW_ASSERT(vertex == kNone || vertex < model.nodeOf.size(), "vertex %u", vertex);
-        const uint32_t other = vertex == kNone ? number : model.nodeOf[vertex];
+        FW_ASSERT(vertex == kNone || vertex < model.particleOf.size(), "vertex %u", vertex);
+        const uint32_t other = vertex == kNone ? number : model.particleOf[vertex];
         return other | gpu::linkOdds(number, other) << 24;
     };
     for (uint32_t i = 0; i < gpu::kDeformLinkPasses; ++i) {
-        const uint32_t* near = node.ring + 2 * i;
-        made.near_[i] = {linked(near[0]), linked(near[1]), node.ringLength[i], 0};
+        const uint32_t* near = particle.ring + 2 * i;
+        made.near_[i] = {linked(near[0]), linked(near[1]), particle.ringLength[i], 0};
     }
     for (uint32_t set = 0; set < gpu::kBendSets; ++set) {
-        const uint32_t* arms = node.arms + 2 * set;
-        const float* lengths = node.bendLength + 2 * set;
-        made.arms[set] = {linked(arms[0]), linked(arms[1]),
-                          glm::packHalf2x16({lengths[0], lengths[1]}), node.bendRise[set]};
+        const uint32_t* ends = particle.bendEnds + 2 * set;
+        const float* lengths = particle.bendLength + 2 * set;
+        made.bends[set] = {linked(ends[0]), linked(ends[1]),
+                           glm::packHalf2x16({lengths[0], lengths[1]}), particle.bendRise[set]};
     }
-    std::copy(std::begin(node.texels), std::end(node.texels), made.texels);
-    made.x = node.x;
-    made.y = node.y;
-    made.z = node.z;
-    made.area = node.area;
-    made.outX = node.outX;
-    made.outY = node.outY;
-    made.outZ = node.outZ;
-    made.limit = node.limit;
+    std::copy(std::begin(particle.texels), std::end(particle.texels), made.texels);
+    made.x = particle.x;
+    made.y = particle.y;
+    made.z = particle.z;
+    made.area = particle.area;
+    made.outX = particle.outX;
+    made.outY = particle.outY;
+    made.outZ = particle.outZ;
+    made.limit = particle.limit;
     return made;
 }
 

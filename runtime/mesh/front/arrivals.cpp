@@ -78,6 +78,7 @@ void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
         const uint32_t word = d.partLinks[size_t(tile) * 4 + block];
         if (word == kNone) continue;
         const PartLink link = readPartLink(d, tile, block, word);
+        FW_ASSERT(link.to < a.ticks.size(), "texel %u of %zu", link.to, a.ticks.size());
         const uint32_t t = a.ticks[link.from], to = link.to;
         if ((lanes >> link.lane & 1) == 0 || !gpu::isSource(t)) continue;
         const PartPath path = partPath(d, a.materials, link);
@@ -160,6 +161,7 @@ void beginArrivals(Arrivals& a, const ArrivalInput& input) {
 }
 
 uint32_t runArrivals(Arrivals& a, uint32_t tiles) noexcept {
+    FW_ASSERT(a.whole || a.domain, "the forecast has not begun");
     while (tiles > 0 && !a.whole) {
         if (a.next == a.due.size()) {
             findDue(a);

@@ -43,6 +43,8 @@ FrontTile runFrontTile(const FrontArrays& arrays, uint32_t tile, uint32_t window
                        uint32_t floorTick, uint32_t* scratch) noexcept {
     FrontTile out;
     const int width = int(arrays.width);
+    FW_ASSERT(arrays.tilesX > 0 && floorTick <= windowEnd, "%u tiles a row, ticks %u to %u",
+              arrays.tilesX, floorTick, windowEnd);
     int offsets[8];
     for (int k = 0; k < 8; ++k) offsets[k] = kFrontRingX[k] + kFrontRingY[k] * width;
     const TileStatic& statics = arrays.tiles[tile];
@@ -105,6 +107,7 @@ FrontTile runFrontTile(const FrontArrays& arrays, uint32_t tile, uint32_t window
             const uint32_t candidate =
                 frontArrival(ring, counts, prep, arrays.materials[material].windowMax, windowEnd,
                              floorTick, texel, false, pending, soonest);
+            FW_ASSERT(slow != 0, "texel %u has no slowness", texel);
             decided = decideTick(t, candidate, windowEnd, floorTick, pending, late);
         }
         if (decided != t) {

@@ -67,9 +67,9 @@ inline std::span<const uint32_t> seamDependents(const BurnDomain& domain, uint32
     FW_ASSERT(tile < domain.tiles.size(), "%u of %zu tiles", tile, domain.tiles.size());
     const TileStatic& statics = domain.tiles[tile];
     if ((statics.seamMask() & mask) == 0) return {};
-    FW_ASSERT(statics.dependentStart + statics.dependentCount <= domain.readers.size(),
+    FW_ASSERT(statics.dependentStart + statics.dependentCount <= domain.dependents.size(),
               "%u readers", statics.dependentCount);
-    return {domain.readers.data() + statics.dependentStart, statics.dependentCount};
+    return {domain.dependents.data() + statics.dependentStart, statics.dependentCount};
 }
 
 }  // namespace fw::mesh

@@ -25,6 +25,7 @@ uint32_t splitLevel(double length, double longest) {
 }
 
 uint32_t fitted(const std::pmr::vector<Split>& splits, const std::array<uint32_t, 3>& sides) {
+    FW_ASSERT(std::max({sides[0], sides[1], sides[2]}) < splits.size(), "%zu edges", splits.size());
     const uint32_t a = splits[sides[0]].level, b = splits[sides[1]].level,
                    c = splits[sides[2]].level;
     return gpu::refinePack(a, b, c, gpu::fitInterior(a, b, c, std::max({a, b, c})));

@@ -56,6 +56,7 @@ std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
                     glm::distance(restOf(slot), rest) < glm::distance(restOf(*nearest), rest))
                     nearest = &slot;
             }
+            FW_ASSERT(vertex < places.size() && nearest, "vertex %u", vertex);
             places[vertex] = rest + (gpu::refineInnerSkin(*nearest) - restOf(*nearest));
         }
     return places;

@@ -132,6 +132,7 @@ void numberSlots(RefineModel& model) {
                        "RefineOptions::depth or raise cellTexels.",
                        kMaxSlots, model.triangles.size());
     }
+    FW_ASSERT(slots >= model.cornerCount, "%u corners", model.cornerCount);
     model.slots.resize(slots);
     model.draws.resize(slots);
 }

@@ -100,6 +100,7 @@ class Offsets {
         const uint32_t steps = 1u << (edge.flags & 15);
         if (steps == 1) return;
         const glm::dvec3 a = coarse_.points[edge.low], b = coarse_.points[edge.high];
+        FW_ASSERT(edge.slot + steps - 1 <= model_.slots.size(), "slot %u", edge.slot);
         Faces faces;
         for (uint32_t o = model_.ownerStart[e]; o < model_.ownerStart[e + 1]; ++o)
             faces.add(normal(model_.owners[o] >> 2), 1);

@@ -26,6 +26,7 @@ void flatten(const float* p, uint32_t normal, float* d) {
 }
 
 float sample(std::span<const uint8_t> noise, uint32_t side, float u, float v) {
+    FW_ASSERT(side > 0 && noise.size() >= size_t(side) * side, "side %u", side);
     const float x = u * float(side) - 0.5f, y = v * float(side) - 0.5f;
     const float fx = x - std::floor(x), fy = y - std::floor(y);
     const auto at = [&](int i, int j) {

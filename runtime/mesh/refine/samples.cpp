@@ -52,6 +52,7 @@ void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
     const gpu::RefineDraw& draw = model.draws[slotIndex];
     slot.texel = slot.weights = 0;
     if (draw.triangle == kNone) return;
+    FW_ASSERT(draw.triangle < domain.indices.size() / 3, "triangle %u", draw.triangle);
     const uint32_t chart = charts.of(draw.triangle);
     const glm::dvec2 uv = uvOf(domain, draw);
     const int x = std::clamp(int(std::floor(uv.x - 0.5)), 0, int(domain.width) - 2);
@@ -112,15 +113,13 @@ class TileLists {
     void invert(RefineModel& model) const {
         FW_ASSERT(start_.size() == model.edges.size() + model.triangles.size() + 1, "%zu items",
                   start_.size() - 1);
-        model.tileStart.assign(domain_.tileCount() + 1, 0);
-        for (const uint32_t t : tiles_) ++model.tileStart[t + 1];
-        for (uint32_t t = 0; t < domain_.tileCount(); ++t)
-            model.tileStart[t + 1] += model.tileStart[t];
-        model.tileItems.resize(tiles_.size());
-        std::pmr::vector<uint32_t> next(model.tileStart, tiles_.get_allocator());
-        for (uint32_t item = 0; item + 1 < start_.size(); ++item)
-            for (uint32_t i = start_[item]; i < start_[item + 1]; ++i)
-                model.tileItems[next[tiles_[i]]++] = item;
+        Groups groups = groupBy(domain_.tileCount(), uint32_t(tiles_.size()), model.memory,
+                                [&](uint32_t i) { return tiles_[i]; });
+        for (uint32_t& entry : groups.items)  // from a place in tiles_ to its item
+            entry = uint32_t(std::upper_bound(start_.begin(), start_.end(), entry) -
+                             start_.begin() - 1);
+        model.tileStart.swap(groups.start);
+        model.tileItems.swap(groups.items);
     }
 
  private:
@@ -153,6 +152,7 @@ void trianglesTiles(const glm::dvec2 uv[3], TileLists& lists) {
 // Tiles along one side, and tiles in reach of it that hold its chart.
 void sideTiles(glm::dvec2 a, glm::dvec2 b, double cells, uint32_t chart, const Charts& charts,
                TileLists& lists) {
+    FW_ASSERT(cells > 0, "%g cells", cells);
     const glm::dvec2 d = b - a;
     const double length = glm::length(d);
     const int samples = 1 + int(2 * length / kTileSide);

@@ -1,4 +1,4 @@
-#include "mesh/deform/arms.h"
+#include "mesh/deform/bends.h"
 
 #include "mesh/surface.h"
 
@@ -14,33 +14,34 @@ using gpu::DeformParticle;
 using gpu::vec3;
 
 constexpr double kSpanShare = 0.34;  // of the narrower side of the mesh
-constexpr float kShorter = 0.6f;     // length of every other arm, of the span
-constexpr float kAside = 0.15f;  // farthest that a node may be off the place sought, of the span
+constexpr float kShorter = 0.6f;     // length of every other constraint, of the span
+constexpr float kAside =
+    0.15f;  // farthest that a particle may be off the place sought, of the span
 constexpr float kFacing = 0.5f;  // cosine between normals at both ends, at least
-constexpr float kEven = 0.02f;   // of the span, that the middle of two arms may be off, aside
-// Squared, of the nodes at edges to all nodes: 16 for a square sheet.
+constexpr float kEven = 0.02f;   // of the span, that the middle of two ends may be off, aside
+// Squared, of the particles at edges to all particles: 16 for a square sheet.
 constexpr double kOpen = 4;
 
-vec3 placeOf(const DeformParticle& node) { return {node.x, node.y, node.z}; }
+vec3 placeOf(const DeformParticle& particle) { return {particle.x, particle.y, particle.z}; }
 
 // The two directions in which a mesh is widest, and how wide it is there.
 struct Axes {
     std::array<vec3, 2> along;
     std::array<double, 2> wide{};
 };
-Axes axesOf(std::span<const DeformParticle> nodes) {
+Axes axesOf(std::span<const DeformParticle> particles) {
     double weights = 0;
     glm::dvec3 middle(0);
-    for (const DeformParticle& node : nodes) {
-        middle += glm::dvec3(placeOf(node)) * double(node.area);
-        weights += double(node.area);
+    for (const DeformParticle& particle : particles) {
+        middle += glm::dvec3(placeOf(particle)) * double(particle.area);
+        weights += double(particle.area);
     }
     middle /= std::max(weights, 1e-30);
     double m[3][3]{};
-    for (const DeformParticle& node : nodes) {
-        const glm::dvec3 d = glm::dvec3(placeOf(node)) - middle;
+    for (const DeformParticle& particle : particles) {
+        const glm::dvec3 d = glm::dvec3(placeOf(particle)) - middle;
         for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) m[r][c] += d[r] * d[c] * double(node.area);
+            for (int c = 0; c < 3; ++c) m[r][c] += d[r] * d[c] * double(particle.area);
     }
     // Eigenvectors, by Jacobi's rotations.
     glm::dvec3 vectors[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -73,8 +74,8 @@ Axes axesOf(std::span<const DeformParticle> nodes) {
     for (size_t i = 0; i < 2; ++i) {
         axes.along[i] = vec3(vectors[order[i]]);
         double low = 1e30, high = -1e30;
-        for (const DeformParticle& node : nodes) {
-            const auto at = double(gpu::dot(placeOf(node), axes.along[i]));
+        for (const DeformParticle& particle : particles) {
+            const auto at = double(gpu::dot(placeOf(particle), axes.along[i]));
             low = std::min(low, at);
             high = std::max(high, at);
         }
@@ -83,15 +84,15 @@ Axes axesOf(std::span<const DeformParticle> nodes) {
     return axes;
 }
 
-// Nodes by their cell of a grid; cells share lists by their hash.
+// Particles by their cell of a grid; cells share lists by their hash.
 class Cells {
  public:
-    Cells(std::span<const DeformParticle> nodes, float side, std::pmr::memory_resource* memory)
+    Cells(std::span<const DeformParticle> particles, float side, std::pmr::memory_resource* memory)
         : side_(side), lists_(memory) {
         FW_ASSERT(side > 0, "%g m", double(side));
-        mask_ = std::bit_ceil(uint32_t(nodes.size()) + 1) - 1;
-        lists_ = groupBy(mask_ + 1, uint32_t(nodes.size()), memory,
-                         [&](uint32_t i) { return bucket(cell(placeOf(nodes[i]))); });
+        mask_ = std::bit_ceil(uint32_t(particles.size()) + 1) - 1;
+        lists_ = groupBy(mask_ + 1, uint32_t(particles.size()), memory,
+                         [&](uint32_t i) { return bucket(cell(placeOf(particles[i]))); });
     }
     // All within `side` of a place, and others.
     template <class Do>
@@ -99,7 +100,7 @@ class Cells {
         const glm::ivec3 middle = cell(place);
         for (int i = 0; i < 27; ++i) {
             const uint32_t at = bucket(middle + glm::ivec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-            for (const uint32_t node : lists_.of(at)) what(node);
+            for (const uint32_t particle : lists_.of(at)) what(particle);
         }
     }
 
@@ -120,56 +121,57 @@ class Cells {
 }  // namespace
 
 void findBends(DeformModel& model, std::pmr::memory_resource* memory) {
-    const std::span<DeformParticle> nodes = model.nodes;
+    const std::span<DeformParticle> particles = model.particles;
     double area = 0, edge = 0;
-    for (DeformParticle& node : nodes) {
-        std::fill(std::begin(node.arms), std::end(node.arms), kNone);
-        area += double(node.area);
-        edge += (node.flags & gpu::kParticleClosed) ? 0 : 1;
+    for (DeformParticle& particle : particles) {
+        std::fill(std::begin(particle.bendEnds), std::end(particle.bendEnds), kNone);
+        area += double(particle.area);
+        edge += (particle.flags & gpu::kParticleClosed) ? 0 : 1;
     }
-    if (edge * edge < kOpen * double(nodes.size()) || !(area > 0)) return;
-    const Axes axes = axesOf(nodes);
-    const double apart = std::sqrt(area / double(nodes.size()));
+    if (edge * edge < kOpen * double(particles.size()) || !(area > 0)) return;
+    const Axes axes = axesOf(particles);
+    const double apart = std::sqrt(area / double(particles.size()));
     model.span = float(std::max(kSpanShare * axes.wide[1], 2 * apart));
-    const Cells cells(nodes, kAside * model.span, memory);
-    const auto facing = [&](const DeformParticle& node) {
-        const gpu::DeformEmbedding& own = model.embeddings[node.vertex];
+    FW_ASSERT(model.span > 0 && apart > 0, "span %g m", double(model.span));
+    const Cells cells(particles, kAside * model.span, memory);
+    const auto facing = [&](const DeformParticle& particle) {
+        const gpu::DeformEmbedding& own = model.embeddings[particle.vertex];
         return vec3(own.faceX, own.faceY, own.faceZ);
     };
     for (uint32_t set = 0; set < gpu::kBendSets; ++set) {
         const vec3 along = axes.along[set & 1] * (set < 2 ? model.span : kShorter * model.span);
         const uint32_t behind = 2 * set, ahead = behind + 1;
-        for (uint32_t i = 0; i < nodes.size(); ++i) {
-            DeformParticle& node = nodes[i];
-            const vec3 sought = placeOf(node) + along;
+        for (uint32_t i = 0; i < particles.size(); ++i) {
+            DeformParticle& particle = particles[i];
+            const vec3 sought = placeOf(particle) + along;
             uint32_t best = kNone;
             float least = kAside * model.span;
             cells.near(sought, [&](uint32_t other) {
-                const DeformParticle& there = nodes[other];
+                const DeformParticle& there = particles[other];
                 const float off = gpu::length(placeOf(there) - sought);
                 // The lowest of several equally near ones, whatever the order of the cells.
-                if (off > least || (off == least && other >= best) || there.arms[behind] != kNone ||
-                    ((there.flags ^ node.flags) & 7u) ||
-                    gpu::dot(facing(node), facing(there)) < kFacing)
+                if (off > least || (off == least && other >= best) ||
+                    there.bendEnds[behind] != kNone || ((there.flags ^ particle.flags) & 7u) ||
+                    gpu::dot(facing(particle), facing(there)) < kFacing)
                     return;
                 least = off;
                 best = other;
             });
             if (best == kNone) continue;
-            node.arms[ahead] = nodes[best].vertex;
-            nodes[best].arms[behind] = node.vertex;
-            node.bendLength[ahead] = nodes[best].bendLength[behind] =
-                gpu::length(placeOf(nodes[best]) - placeOf(node));
+            particle.bendEnds[ahead] = particles[best].vertex;
+            particles[best].bendEnds[behind] = particle.vertex;
+            particle.bendLength[ahead] = particles[best].bendLength[behind] =
+                gpu::length(placeOf(particles[best]) - placeOf(particle));
         }
-        for (DeformParticle& node : nodes) {
-            if (node.arms[behind] == kNone || node.arms[ahead] == kNone) continue;
-            const vec3 middle = (placeOf(nodes[model.nodeOf[node.arms[behind]]]) +
-                                 placeOf(nodes[model.nodeOf[node.arms[ahead]]])) *
+        for (DeformParticle& particle : particles) {
+            if (particle.bendEnds[behind] == kNone || particle.bendEnds[ahead] == kNone) continue;
+            const vec3 middle = (placeOf(particles[model.particleOf[particle.bendEnds[behind]]]) +
+                                 placeOf(particles[model.particleOf[particle.bendEnds[ahead]]])) *
                                 0.5f;
-            const vec3 normal = facing(node), off = middle - placeOf(node);
-            node.bendRise[set] = gpu::dot(off, normal);
-            if (gpu::length(off - normal * node.bendRise[set]) < kEven * model.span)
-                node.flags |= gpu::kParticleBendsEven << set;
+            const vec3 normal = facing(particle), off = middle - placeOf(particle);
+            particle.bendRise[set] = gpu::dot(off, normal);
+            if (gpu::length(off - normal * particle.bendRise[set]) < kEven * model.span)
+                particle.flags |= gpu::kParticleBendsEven << set;
         }
     }
 }
