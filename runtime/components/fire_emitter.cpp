@@ -208,6 +208,7 @@ void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& shield,
 
 float longestParticleLife(const FireEmitter& emitter) {
     const FwFireEmitterDef& def = emitter.def;
+    FW_ASSERT(emitter.look.life > 0, "%g s", double(emitter.look.life));
     const float fire = emitter.look.life * (1 + 1.55f * def.lifeVariance);
     const bool smokes = def.smoke > 0 && !(def.flags & FW_EMITTER_NO_SMOKE);
     return fire * (smokes ? 1 + def.smokeLife : 1.0f);
@@ -300,6 +301,7 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
         births.part = sum - whole;
         f.fresh = uint32_t(std::min(whole, double(emitter.ring)));
     }
+    FW_ASSERT(births.part >= 0 && births.part < 1, "part %g", births.part);
     births.head = (births.head + f.fresh) % emitter.ring;
     births.filled = std::min(births.filled + f.fresh, emitter.ring);
     births.serial += f.fresh;
@@ -336,6 +338,8 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     countBirths(emitter, air.now, f);
     if (births.filled == 0) return false;
 
+    FW_ASSERT(births.filled <= emitter.ring && births.head < emitter.ring && births.vigour > 0,
+              "%u of %u particles", births.filled, emitter.ring);
     const bool onMesh = def.shape == FW_EMITTER_MESH;
     const bool smokes = !(def.flags & FW_EMITTER_NO_SMOKE);
     const float vigour = births.vigour, seconds = f.seconds;

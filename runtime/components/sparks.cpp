@@ -96,6 +96,8 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     float most = rate;
     for (const auto& one : history.notes) most = std::max(most, one[3]);
     if (!(most > 0) || (def.flags & FW_EMITTER_HIDDEN)) return false;
+    FW_ASSERT(history.step >= step, "step %lld of %lld", static_cast<long long>(history.step),
+              static_cast<long long>(step));
     record = {};
     record.keys[0] = {emitter.position[0], emitter.position[1], emitter.position[2], rate};
     for (uint32_t i = 0; i < kSparkNotes; ++i) {

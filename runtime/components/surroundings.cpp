@@ -3,6 +3,8 @@
 #include "components/lights.h"
 #include "volume/look.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,6 +34,7 @@ InPlume inPlume(const FireSource& fire, const SurroundingAir& air, vec3 point) n
     const float rise = std::max(volume::plumeSpeed(fire.power, high), 0.3f);
     const vec3 off = offset - air.up * z - air.wind * (std::max(z, 0.0f) / rise);
     const float wide = fire.radius + 0.12f * std::max(z, 0.0f);
+    FW_ASSERT(wide > 0, "%g m", double(wide));
     return {high, std::exp(-glm::dot(off, off) / (wide * wide))};
 }
 
