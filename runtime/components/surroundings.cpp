@@ -92,12 +92,12 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
         const float near = std::max(fire.radius, 0.3f * fire.height);
         const float flux =
             kRadiant * 1000.0f * fire.power / (kSphere * std::max(glm::dot(to, to), near * near));
-        const bool hidden =
-            flux > kMinFlux && (std::any_of(air.walls.begin(), air.walls.end(),
-                                            [&](const volume::Collider& wall) {
-                                                return volume::shades(wall, middle, point);
-                                            }) ||
-                                isShadedByOcclusion(air.shield, &middle.x, &point.x, fire.radius));
+        const bool hidden = flux > kMinFlux &&
+                            (std::any_of(air.walls.begin(), air.walls.end(),
+                                         [&](const volume::Collider& wall) {
+                                             return volume::shades(wall, middle, point);
+                                         }) ||
+                             isShadedByOcclusion(air.occlusion, &middle.x, &point.x, fire.radius));
         if (!hidden) all.heatFlux += flux;
         all.heatFlux += kConvection * excess;
     }
