@@ -141,7 +141,7 @@ class InMetres {
     Def def_;
 };
 
-// The same of a shield, whose function asks the host in the host's unit.
+// The same of a heat-occlusion grid, whose function asks the host in the host's unit.
 class OcclusionInMetres {
  public:
     OcclusionInMetres(FwWorld& world, const FwHeatOcclusionDef* given)

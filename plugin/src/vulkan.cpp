@@ -218,8 +218,10 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
     components::checkFlags(frame.flags, "FwVulkanFrame::flags",
                            FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING);
     checkPointer(frame.commandBuffer, "FwVulkanFrame::commandBuffer");
-    checkWhole(frame.reserved, "FwVulkanFrame::reserved", 0, 0);
-    checkWhole(frame.reserved1, "FwVulkanFrame::reserved1", 0, 0);
+    for (const uint32_t word : {frame.reserved, frame.reserved1})
+        if (word != 0)
+            core::refuse("FwVulkanFrame::reserved%s is %u; it is zero.",
+                         frame.reserved == 0 ? "1" : "", word);
     checkScissor(frame.scissor);
     components::checkValue(frame.transparency, "FwVulkanFrame::transparency", 0.0f, 1.0f);
     if (frame.frameIndex == 0) core::refuse("FwVulkanFrame::frameIndex is 0; it starts at 1.");

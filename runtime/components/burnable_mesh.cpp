@@ -7,6 +7,8 @@
 #include "mesh/bake.h"
 #include "shared/refine.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -148,6 +150,8 @@ bool CutOut::at(int64_t x, int64_t y) const noexcept {
 CutOut makeCutOut(const FwImageDef& def, std::pmr::memory_resource* memory) {
     CutOut made(memory);
     if (!(def.alphaCutoff > 0)) return made;
+    FW_ASSERT(def.pixels && def.width > 0 && def.height > 0, "%u x %u pixels", def.width,
+              def.height);
     made.width = def.width;
     made.height = def.height;
     const size_t rowBytes = (def.width + 7) / 8;
@@ -434,6 +438,7 @@ gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& d
 }
 
 void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept {
+    FW_ASSERT(pose.scale > 0, "scale %g", double(pose.scale));
     for (int r = 0; r < 3; ++r)
         rows[r] = gpu::vec4(pose.rotation[r][0] * pose.scale * pose.stretch[0],
                             pose.rotation[r][1] * pose.scale * pose.stretch[1],

@@ -191,23 +191,24 @@ void setEmitterPower(FireEmitter& emitter, float power) {
     if (power > 0) emitter.look = emitterLook(emitter.def);  // at 0, flying particles keep theirs
 }
 
-void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& shield,
+void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& obstacle,
                     double now) noexcept {
     FW_ASSERT(i < kJetRays, "ray %u", i);
-    JetObstacle& has = emitter.shields[i];
+    JetObstacle& has = emitter.obstacles[i];
     float apart = 0;
     for (int k = 0; k < 3; ++k)
-        apart += (has.place[k] - shield.place[k]) * (has.place[k] - shield.place[k]);
-    if (has.met && (!shield.met || apart > 0.16f)) {
+        apart += (has.place[k] - obstacle.place[k]) * (has.place[k] - obstacle.place[k]);
+    if (has.met && (!obstacle.met || apart > 0.16f)) {
         JetObstacle& last = emitter.lastObstacles[emitter.nextLast++ % kJetRays];
         last = has;
         last.until = now + 0.8;
     }
-    has = shield;
+    has = obstacle;
 }
 
 float longestParticleLife(const FireEmitter& emitter) {
     const FwFireEmitterDef& def = emitter.def;
+    FW_ASSERT(emitter.look.life > 0, "%g s", double(emitter.look.life));
     const float fire = emitter.look.life * (1 + 1.55f * def.lifeVariance);
     const bool smokes = def.smoke > 0 && !(def.flags & FW_EMITTER_NO_SMOKE);
     return fire * (smokes ? 1 + def.smokeLife : 1.0f);
@@ -300,6 +301,7 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
         births.part = sum - whole;
         f.fresh = uint32_t(std::min(whole, double(emitter.ring)));
     }
+    FW_ASSERT(births.part >= 0 && births.part < 1, "part %g", births.part);
     births.head = (births.head + f.fresh) % emitter.ring;
     births.filled = std::min(births.filled + f.fresh, emitter.ring);
     births.serial += f.fresh;
@@ -309,18 +311,18 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
 }
 
 // The discs that stop a jet.
-void writeShields(const FireEmitter& emitter, double now, gpu::ParticleEmitter& record) noexcept {
-    const auto add = [&](const JetObstacle& shield) {
+void writeObstacles(const FireEmitter& emitter, double now, gpu::ParticleEmitter& record) noexcept {
+    const auto add = [&](const JetObstacle& obstacle) {
         FW_ASSERT(2 * record.obstacleCount + 1 < std::size(record.obstacles), "%u discs",
                   record.obstacleCount);
-        record.obstacles[2 * record.obstacleCount] = with(shield.place, shield.radius);
-        record.obstacles[2 * record.obstacleCount + 1] = with(shield.normal, 0);
+        record.obstacles[2 * record.obstacleCount] = with(obstacle.place, obstacle.radius);
+        record.obstacles[2 * record.obstacleCount + 1] = with(obstacle.normal, 0);
         ++record.obstacleCount;
     };
-    for (const JetObstacle& shield : emitter.shields)
-        if (shield.met) add(shield);
-    for (const JetObstacle& shield : emitter.lastObstacles)
-        if (shield.met && shield.until > now) add(shield);
+    for (const JetObstacle& obstacle : emitter.obstacles)
+        if (obstacle.met) add(obstacle);
+    for (const JetObstacle& obstacle : emitter.lastObstacles)
+        if (obstacle.met && obstacle.until > now) add(obstacle);
 }
 
 }  // namespace
@@ -336,6 +338,8 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     countBirths(emitter, air.now, f);
     if (births.filled == 0) return false;
 
+    FW_ASSERT(births.filled <= emitter.ring && births.head < emitter.ring && births.vigour > 0,
+              "%u of %u particles", births.filled, emitter.ring);
     const bool onMesh = def.shape == FW_EMITTER_MESH;
     const bool smokes = !(def.flags & FW_EMITTER_NO_SMOKE);
     const float vigour = births.vigour, seconds = f.seconds;
@@ -376,13 +380,13 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     record.apart = float(1.0 / rate);
     record.age = f.burns ? float(births.part / rate) : 0.0f;
     record.seed = emitter.seed;
-    record.fireFlipbooks = emitter.books.fire;
-    record.smokeFlipbooks = emitter.books.other;
+    record.fireFlipbooks = emitter.flipbooks.fire;
+    record.smokeFlipbooks = emitter.flipbooks.other;
     record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
                    ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u) |
-                   (emitter.books.fireEmits ? gpu::kEmitterEmits : 0u);
-    if (isSwept(def)) writeShields(emitter, air.now, record);
+                   (emitter.flipbooks.fireEmits ? gpu::kEmitterEmits : 0u);
+    if (isSwept(def)) writeObstacles(emitter, air.now, record);
     // Waves of the stream at the frame's start and now: births lie between.
     const double phase = double(emitter.seed & 1023u) * 0.137;
     const auto waves = [&](double t) {

@@ -76,7 +76,7 @@ constexpr float kTeleport = 100;  // m/s; a faster move is a teleport
 struct FireEmitter {
     FwFireEmitterDef def{};
     EmitterLook look;
-    EmitterFlipbooks books;
+    EmitterFlipbooks flipbooks;
     float share = 1;  // of its births; on a mesh, the burning share of it
     uint32_t seed = 0;
     uint32_t first = 0, ring = 0;  // its range of the world's particles
@@ -85,7 +85,7 @@ struct FireEmitter {
     JetHits hits{};
     uint64_t swept = 0;                     // the world's frame of that sweep
     std::array<JetHole, kJetRays> holes{};  // as of the last readback; cosmetic
-    std::array<JetObstacle, kJetRays> shields{}, lastObstacles{};
+    std::array<JetObstacle, kJetRays> obstacles{}, lastObstacles{};
     uint32_t nextLast = 0;
     uint32_t blockedRays = 0;  // rays that an obstacle stopped
     float clearDistance = 0;   // m to the nearest obstacle
@@ -114,7 +114,7 @@ inline bool isSwept(const FwFireEmitterDef& def) noexcept {
     return (def.flags & FW_EMITTER_JET) && !(def.flags & FW_EMITTER_NO_COLLISION);
 }
 // Sets the disc that ray `i` strikes; the disc before it still stops particles on their way there.
-void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& shield,
+void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& obstacle,
                     double now) noexcept;
 EmitterLook emitterLook(const FwFireEmitterDef& def);
 // Particles that the emitter needs at its power; s that a particle lasts at most.

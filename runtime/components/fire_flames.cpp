@@ -1,5 +1,7 @@
 #include "components/fire_flames.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -118,6 +120,7 @@ FireState FireFlames::predictAhead(VolumetricFire& fire, const FireAir& air) con
     FireState s;
     FireFlame f;
     f.fire = &fire;
+    FW_ASSERT(fire.partCount <= fire.parts.size(), "%u parts", fire.partCount);
     for (; f.part < fire.partCount && fire.power > 0; ++f.part) {
         place(f, air);
         volume::FlameDef& def = f.flame.def;
@@ -196,6 +199,7 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
 }
 
 void FireFlames::advance(const FireAir& air, float seconds) noexcept {
+    FW_ASSERT(seconds >= 0, "%g s", double(seconds));
     const vec3 up = volume::vecOf(air.up);
     others_.clear();
     for (FireFlame& f : next_) {
@@ -265,6 +269,7 @@ void FireFlames::sumStates() noexcept {
         s.contact += flame.motion.contactPower * flame.motion.contact;
     }
     for (const FireFlame& f : next_) {
+        FW_ASSERT(f.fire->nextState.flames > 0 && f.fire->nextState.intensity > 0);
         FireState& s = f.fire->nextState;
         if (s.mean) continue;
         s.mean = true;

@@ -61,6 +61,7 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
     Gusts gusts = before;
     gusts.strength = std::llround(double(def.strength) * double(kGustOne));
     gusts.size = millimetres(def.size);
+    FW_ASSERT(plausible(gusts, gusts.since), "%lld mm", static_cast<long long>(gusts.size));
     return gusts;
 }
 

@@ -82,7 +82,8 @@ class OcclusionFill {
         if (entry == kEmpty) {
             if (out_.size() >= gpu::kMaxBakedOcclusionCells)
                 core::refuse(
-                    "Objects fill more than %u cells of the shield, which is the limit: "
+                    "Objects fill more than %u cells of the heat-occlusion grid, which is the "
+                    "limit: "
                     "larger cells are fewer.",
                     gpu::kMaxBakedOcclusionCells);
             entry = uint32_t(out_.size());
@@ -183,19 +184,19 @@ void bakeOcclusion(const OcclusionGridShape& shape, std::span<const OcclusionObj
               [](const OcclusionCell& a, const OcclusionCell& b) { return a.cell < b.cell; });
 }
 
-void packOcclusion(const HeatOcclusion& shield, std::pmr::vector<uint32_t>& words) {
-    const size_t count = shield.shape.words();
-    FW_ASSERT(shield.solid.size() == count, "%zu of %zu words", shield.solid.size(), count);
+void packOcclusion(const HeatOcclusion& grid, std::pmr::vector<uint32_t>& words) {
+    const size_t count = grid.shape.words();
+    FW_ASSERT(grid.solid.size() == count, "%zu of %zu words", grid.solid.size(), count);
     FW_ASSERT(std::is_sorted(
-        shield.baked.begin(), shield.baked.end(),
+        grid.baked.begin(), grid.baked.end(),
         [](const OcclusionCell& a, const OcclusionCell& b) { return a.cell < b.cell; }));
-    words.assign(3 * count + 2 * shield.baked.size(), 0);
-    std::copy(shield.solid.begin(), shield.solid.end(), words.begin());
+    words.assign(3 * count + 2 * grid.baked.size(), 0);
+    std::copy(grid.solid.begin(), grid.solid.end(), words.begin());
     size_t at = 0;
     for (size_t word = 0; word < count; ++word) {
         words[count + 2 * word + 1] = uint32_t(at);
-        for (; at < shield.baked.size() && shield.baked[at].cell / 32 == word; ++at) {
-            const OcclusionCell& cell = shield.baked[at];
+        for (; at < grid.baked.size() && grid.baked[at].cell / 32 == word; ++at) {
+            const OcclusionCell& cell = grid.baked[at];
             const uint32_t bit = 1u << cell.cell % 32;
             words[word] |= bit;
             words[count + 2 * word] |= bit;
@@ -205,47 +206,44 @@ void packOcclusion(const HeatOcclusion& shield, std::pmr::vector<uint32_t>& word
     }
 }
 
-float sweepOcclusion(const HeatOcclusion& shield, const float from[3], const float direction[3],
+float sweepOcclusion(const HeatOcclusion& grid, const float from[3], const float direction[3],
                      float most) noexcept {
-    if (shield.solid.empty()) return most;
+    if (grid.solid.empty()) return most;
     const float far = std::min(most, 0.001f * float(gpu::kExchangeFar - 1));
     float to[3];
     for (int i = 0; i < 3; ++i) to[i] = from[i] + direction[i] * far;
-    gpu::OcclusionWalk w =
-        gpu::beginOcclusionWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
-    for (bool open = w.passed > 0; w.within; gpu::stepOcclusionWalk(w, shield.shape.cell)) {
-        FW_ASSERT(w.cell < shield.shape.cells(), "%u of %u cells", w.cell, shield.shape.cells());
-        const bool solid = shield.solid[w.cell / 32] >> w.cell % 32 & 1;
+    gpu::OcclusionWalk w = gpu::beginOcclusionWalk(rulesOf(grid.shape), placeOf(from), placeOf(to));
+    for (bool open = w.passed > 0; w.within; gpu::stepOcclusionWalk(w, grid.shape.cell)) {
+        FW_ASSERT(w.cell < grid.shape.cells(), "%u of %u cells", w.cell, grid.shape.cells());
+        const bool solid = grid.solid[w.cell / 32] >> w.cell % 32 & 1;
         if (solid && open) return std::min(most, far * float(w.passed) / float(w.of));
         open |= !solid;
     }
     return most;
 }
 
-bool isShadedByOcclusion(const OcclusionView& shield, const float from[3], const float to[3],
+bool isShadedByOcclusion(const OcclusionView& grid, const float from[3], const float to[3],
                          float spare) noexcept {
-    if (shield.words.empty()) return false;
-    const uint32_t words = shield.shape.words(), side = shield.shape.cell;
+    if (grid.words.empty()) return false;
+    const uint32_t words = grid.shape.words(), side = grid.shape.cell;
     gpu::OcclusionEnds ends;
     ends.from = ends.to = gpu::kNoneTexel;  // no object's: all cells count
     ends.fromSpare = side + uint32_t(std::clamp(spare, 0.0f, 10.0f) * 1000);
     ends.toSpare = side;
-    gpu::OcclusionWalk w =
-        gpu::beginOcclusionWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
+    gpu::OcclusionWalk w = gpu::beginOcclusionWalk(rulesOf(grid.shape), placeOf(from), placeOf(to));
     for (; w.within; gpu::stepOcclusionWalk(w, side)) {
         const uint32_t at = w.cell / 32, bit = 1u << w.cell % 32;
-        FW_ASSERT(words + 2 * at + 1 < shield.words.size(), "word %u of %zu", at,
-                  shield.words.size());
-        if ((shield.words[at] & bit) == 0) continue;
+        FW_ASSERT(words + 2 * at + 1 < grid.words.size(), "word %u of %zu", at, grid.words.size());
+        if ((grid.words[at] & bit) == 0) continue;
         if (gpu::isNearWalkEnd(w, ends, gpu::kNoneTexel, side)) continue;
-        const uint32_t baked = shield.words[words + 2 * at];
+        const uint32_t baked = grid.words[words + 2 * at];
         if ((baked & bit) == 0) return true;
         const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
-        const uint32_t i = shield.words[words + 2 * at + 1] + before;
-        FW_ASSERT(3 * words + 2 * i < shield.words.size(), "cell %u, %zu words", i,
-                  shield.words.size());
-        const uint32_t slot = shield.words[3 * words + 2 * i] & gpu::kOcclusionSlotMask;
-        if (slot >= shield.fallen.size() || shield.fallen[slot] == 0) return true;
+        const uint32_t i = grid.words[words + 2 * at + 1] + before;
+        FW_ASSERT(3 * words + 2 * i < grid.words.size(), "cell %u, %zu words", i,
+                  grid.words.size());
+        const uint32_t slot = grid.words[3 * words + 2 * i] & gpu::kOcclusionSlotMask;
+        if (slot >= grid.fallen.size() || grid.fallen[slot] == 0) return true;
     }
     return false;
 }

@@ -29,7 +29,7 @@ struct OcclusionGridShape {  // places of the cells; counts of 0: there is no gr
     template <class A>
     void serialize(A& a) {
         a(counts, origin, cell);
-        a.require(plausible(*this), "heat shield");
+        a.require(plausible(*this), "heat-occlusion grid");
     }
 };
 
@@ -51,7 +51,7 @@ struct HeatOcclusion {
 
     template <class A>
     void serialize(A& a) {
-        constexpr const char* kName = "heat shield";
+        constexpr const char* kName = "heat-occlusion grid";
         a(shape);
         if constexpr (A::kReads) solid.assign(shape.words(), 0);
         if (shape.cells() == 0) return;
@@ -101,11 +101,11 @@ void bakeOcclusion(const OcclusionGridShape& shape, std::span<const OcclusionObj
                    std::pmr::vector<OcclusionCell>& out);
 
 // Packs the grid for the backends.
-void packOcclusion(const HeatOcclusion& shield, std::pmr::vector<uint32_t>& words);
+void packOcclusion(const HeatOcclusion& grid, std::pmr::vector<uint32_t>& words);
 
 // m along a ray until it enters a solid cell of the host from an open one, or `most`. A ray that
 // begins in solid cells leaves them first.
-[[nodiscard]] float sweepOcclusion(const HeatOcclusion& shield, const float from[3],
+[[nodiscard]] float sweepOcclusion(const HeatOcclusion& grid, const float from[3],
                                    const float direction[3], float most) noexcept;
 
 struct OcclusionView {  // the packed grid, for cosmetic questions
@@ -114,7 +114,7 @@ struct OcclusionView {  // the packed grid, for cosmetic questions
     std::span<const uint8_t> fallen;  // by slot, 1: the object's cells have fallen
 };
 // Whether a cell lies between two places, further than `spare` m from the first.
-[[nodiscard]] bool isShadedByOcclusion(const OcclusionView& shield, const float from[3],
+[[nodiscard]] bool isShadedByOcclusion(const OcclusionView& grid, const float from[3],
                                        const float to[3], float spare) noexcept;
 
 }  // namespace fw::components

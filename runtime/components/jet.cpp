@@ -31,6 +31,7 @@ JetFlight jetFlight(const EmitterLook& look) noexcept {
         const uint64_t drag = std::max<uint64_t>(stream - ((stream - torn) * part >> 8), 1);
         speed = speed * drag / (drag + gpu::kStepTicks);
         way += speed * gpu::kStepTicks / gpu::kTicksPerSecond;
+        FW_ASSERT(way >> 8 <= 0xFFFFFFFFu, "%llu mm", static_cast<unsigned long long>(way >> 8));
         if ((i + 1) % kSubsteps == 0) flight[(i + 1) / kSubsteps] = uint32_t(way >> 8);
     }
     return flight;
@@ -62,6 +63,7 @@ uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept {
 }
 
 uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept {
+    FW_ASSERT(exchanges > 0, "%u exchanges", exchanges);
     const uint64_t takes = std::min(fuel, kMaxPatch - std::min(patch.fuel, kMaxPatch));
     if (takes == 0) return fuel;
     patch.fuel += takes;

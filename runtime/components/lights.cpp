@@ -29,6 +29,7 @@ void join(FwLight& light, const FwLight& other) noexcept {
     const float both = light.intensity + other.intensity;
     const float share = both > 0 ? other.intensity / both : 0.0f;
     const float distance = std::sqrt(squareDistance(light, other));
+    FW_ASSERT(share >= 0 && share <= 1, "share %g", double(share));
     for (int i = 0; i < 3; ++i) light.color[i] += share * (other.color[i] - light.color[i]);
     if (distance < kReach * light.radius + 2) {
         for (int i = 0; i < 3; ++i)

@@ -147,6 +147,7 @@ field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexc
     def.wind.x = std::clamp(along * field.windResponse, -kMaxWind, kMaxWind);
     field::FieldRules rules = field::fieldRules(def);
     const int w = int(def.width), h = int(def.height);
+    FW_ASSERT(w > 0 && h > 0, "%d x %d cells", w, h);
     const uint32_t rate = field::emissionRate(def.look.amount);
     if (field.source == FW_FIELD_SOURCE_PAINTED) {
         rules.paint = rate;
@@ -177,6 +178,7 @@ uint32_t fieldSteps(const ParticleField& field, uint64_t ticks) noexcept {
 
 gpu::FieldDraw fieldDraw(const ParticleField& field, double ticks, uint32_t steps,
                          double clock) noexcept {
+    FW_ASSERT(field.def.stepRate > 0 && field.def.width % 4 == 0, "%u Hz", field.def.stepRate);
     constexpr double kWrap = 819.2;  // s, whole periods of the noise
     const bool still = (field.flags & core::reserved::kFieldStill) != 0;
     const double into = ticks * field.def.stepRate / kTicksPerSecond - double(steps);

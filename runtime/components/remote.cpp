@@ -2,6 +2,8 @@
 
 #include "components/wind_zone.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -87,6 +89,7 @@ void fillExchangeObject(const BurnableMesh& object, const mesh::BurnDomain& doma
                         const Governance& governance, gpu::ExchangeObject& out) noexcept {
     const double scale = double(object.pose.scale);
     const double area = domain.texelArea() * scale * scale;
+    FW_ASSERT(area > 0, "%g m^2", area);
     out.texelArea = uint32_t(std::clamp(area * 1e6, 1.0, 4e9));
     double damping = 0;
     for (uint32_t i = 0; i < kMaterials; ++i) {
@@ -129,6 +132,7 @@ uint32_t exchangeReach(const BurnableMesh& object, const mesh::BurnDomain& domai
     double watts = 0;
     for (uint32_t i = 0; i < kMaterials; ++i)
         if (burns(object, i)) watts += powerOf(object.materials[i]) * area * double(texelsOf[i]);
+    FW_ASSERT(watts >= 0, "%g W", watts);
     const double radiant = std::sqrt(0.33 * watts / (12.566 * kWeakest));
     const double plume = std::pow(21.6 / kCoolest, 0.6) * std::pow(watts / 1000, 0.4);
     const double reach = std::max({radiant, plume, 0.1}) * kMillimetres;

@@ -76,6 +76,7 @@ bool plausible(const Room& room) noexcept {
 }
 
 bool isIn(const Room& room, const WindPlace& place) noexcept {
+    FW_ASSERT(room.half[0] > 0 && room.half[1] > 0 && room.half[2] > 0);
     const int64_t off[3] = {place.x - room.middle[0], place.y - room.middle[1],
                             place.z - room.middle[2]};
     // No room reaches as far; the products below fit 64 bits.
@@ -100,6 +101,7 @@ uint64_t Room::flashPower() const noexcept {
 
 gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) noexcept {
     const double volume = double(room.volume) / 1000;
+    FW_ASSERT(room.volume > 0 && pace > 0, "%g m^3, pace %g", volume, double(pace));
     FW_ASSERT(room.volume > 0, "a room without air");
     // An implicit step: stable for any vent.
     const double changes = double(room.vent) / 1e6 / volume * kPeriod * double(pace);

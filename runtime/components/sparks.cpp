@@ -38,11 +38,11 @@ void note(SparkHistory& history, const float place[3], float rate) noexcept {
 void findWall(const FireEmitter& emitter, gpu::SparkSource& record) noexcept {
     gpu::vec3 place(0.0f), normal(0.0f);
     float count = 0, radius = 0;
-    for (const JetObstacle& shield : emitter.shields) {
-        if (!shield.met) continue;
-        place += gpu::vec3(shield.place[0], shield.place[1], shield.place[2]);
-        normal += gpu::vec3(shield.normal[0], shield.normal[1], shield.normal[2]);
-        radius = std::max(radius, shield.radius);
+    for (const JetObstacle& obstacle : emitter.obstacles) {
+        if (!obstacle.met) continue;
+        place += gpu::vec3(obstacle.place[0], obstacle.place[1], obstacle.place[2]);
+        normal += gpu::vec3(obstacle.normal[0], obstacle.normal[1], obstacle.normal[2]);
+        radius = std::max(radius, obstacle.radius);
         count += 1;
     }
     const float length = glm::length(normal);
@@ -96,6 +96,8 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     float most = rate;
     for (const auto& one : history.notes) most = std::max(most, one[3]);
     if (!(most > 0) || (def.flags & FW_EMITTER_HIDDEN)) return false;
+    FW_ASSERT(history.step >= step, "step %lld of %lld", static_cast<long long>(history.step),
+              static_cast<long long>(step));
     record = {};
     record.keys[0] = {emitter.position[0], emitter.position[1], emitter.position[2], rate};
     for (uint32_t i = 0; i < kSparkNotes; ++i) {
@@ -128,7 +130,7 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.slots =
         std::min(uint32_t(std::ceil(double(most) * double(gpu::kSparkTurn))), gpu::kMaxSparks);
     if (def.flags & FW_EMITTER_GROUND) record.flags |= gpu::kSparkGround;
-    record.flipbook = emitter.books.spark;
+    record.flipbook = emitter.flipbooks.spark;
     record.object = onMesh ? def.object.index1 : 0;
     return !onMesh || record.object != 0;
 }

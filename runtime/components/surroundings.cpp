@@ -3,6 +3,8 @@
 #include "components/lights.h"
 #include "volume/look.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,6 +34,7 @@ InPlume inPlume(const FireSource& fire, const SurroundingAir& air, vec3 point) n
     const float rise = std::max(volume::plumeSpeed(fire.power, high), 0.3f);
     const vec3 off = offset - air.up * z - air.wind * (std::max(z, 0.0f) / rise);
     const float wide = fire.radius + 0.12f * std::max(z, 0.0f);
+    FW_ASSERT(wide > 0, "%g m", double(wide));
     return {high, std::exp(-glm::dot(off, off) / (wide * wide))};
 }
 
@@ -89,12 +92,12 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
         const float near = std::max(fire.radius, 0.3f * fire.height);
         const float flux =
             kRadiant * 1000.0f * fire.power / (kSphere * std::max(glm::dot(to, to), near * near));
-        const bool hidden =
-            flux > kMinFlux && (std::any_of(air.walls.begin(), air.walls.end(),
-                                            [&](const volume::Collider& wall) {
-                                                return volume::shades(wall, middle, point);
-                                            }) ||
-                                isShadedByOcclusion(air.shield, &middle.x, &point.x, fire.radius));
+        const bool hidden = flux > kMinFlux &&
+                            (std::any_of(air.walls.begin(), air.walls.end(),
+                                         [&](const volume::Collider& wall) {
+                                             return volume::shades(wall, middle, point);
+                                         }) ||
+                             isShadedByOcclusion(air.occlusion, &middle.x, &point.x, fire.radius));
         if (!hidden) all.heatFlux += flux;
         all.heatFlux += kConvection * excess;
     }

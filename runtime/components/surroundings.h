@@ -27,7 +27,7 @@ FireSource fireSource(vec3 base, float radius, float power, uint32_t id) noexcep
 struct SurroundingAir {
     vec3 up{0.0f, 1.0f, 0.0f}, wind{0.0f};    // unit; m/s
     std::span<const volume::Collider> walls;  // stop heat
-    OcclusionView shield;                     // likewise
+    OcclusionView occlusion;                  // likewise
 };
 
 struct Surroundings {

@@ -223,6 +223,7 @@ void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def) {
 }
 
 FwLight fireLight(const VolumetricFire& fire, uint32_t id, uint64_t frameIndex) noexcept {
+    FW_ASSERT(fire.diameter > 0, "%g m", double(fire.diameter));
     FwLight light{};
     for (int i = 0; i < 3; ++i) {
         light.position[i] = fire.state.light[i];

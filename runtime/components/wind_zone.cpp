@@ -179,6 +179,8 @@ fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector&
         if (depth >= kOne) continue;
         const int64_t part =
             zone.fades > 0 ? std::min((kOne - depth) * kOne / zone.fades, kOne) : kOne;
+        FW_ASSERT(depth >= 0 && part >= 0 && part <= kOne, "part %lld",
+                  static_cast<long long>(part));
         const Vector flow = flowOf(zone, off);
         for (size_t i = 0; i < 3; ++i) {
             const int64_t blows = flow[i] * zone.speed / kOne;

@@ -67,6 +67,8 @@ uint32_t shelve(std::span<Block> blocks, uint32_t width) {
         x += block.width;
         shelf = std::max(shelf, block.height);
     }
+    FW_ASSERT(std::all_of(blocks.begin(), blocks.end(),
+                          [&](const Block& b) { return b.x + b.width <= width; }));
     return y + shelf;
 }
 
@@ -75,6 +77,7 @@ void copyFrames(const Facts& f, const Block& block, std::span<const uint8_t> fro
     const uint32_t border = block.motion ? 0 : kBorder, bytes = block.motion ? 2 : 4;
     const uint32_t w = block.motion ? f.motionWidth : f.width >> block.level,
                    h = block.motion ? f.motionHeight : f.height >> block.level;
+    FW_ASSERT(from.size() == size_t(bytes) * w * h * f.frames, "%zu bytes", from.size());
     for (uint32_t frame = 0; frame < f.frames; ++frame) {
         const uint32_t x = block.x + frame % block.columns * (w + 2 * border) + border;
         const uint32_t y = block.y + frame / block.columns * (h + 2 * border) + border;

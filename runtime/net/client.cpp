@@ -1,5 +1,7 @@
 #include "net/client.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,6 +36,8 @@ Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resour
       packet_(memory) {
     packet_.reserve(kMaxPacket);
     marks_.reserve(kMarks);
+    FW_ASSERT(def.packetBytes >= kMinPacket && def.packetBytes <= kMaxPacket, "%u bytes",
+              def.packetBytes);
 }
 
 // ---- what comes ---------------------------------------------------------------------------------
@@ -148,6 +152,7 @@ void Client::readStream(core::Reader& reader, bool newest) {
     heard_ = std::max(heard_, mark.step);
     if (mark.step <= reached_) return;
     if (marks_.size() == kMarks) marks_.pop_back();
+    FW_ASSERT(marks_.size() < kMarks, "%zu marks", marks_.size());
     marks_.push_back(mark);
     settleMarks();
 }
@@ -156,6 +161,7 @@ void Client::readStream(core::Reader& reader, bool newest) {
 void Client::keep(uint32_t record, std::span<const std::byte> bytes) {
     const bool skipped = record_.kind == RecordKind::skipped;
     const uint32_t count = skipped ? uint32_t(record_.tick) : 1;
+    FW_ASSERT(count > 0, "record %u", record);
     if (record + count <= next_) return;
     if (waiting_.size() >= kMaxWaiting && record > received_) return;
     Waiting waiting{count, std::pmr::vector<std::byte>(memory_)};
@@ -201,6 +207,7 @@ RecordRuns Client::runs() const noexcept {
 
 // The record to be done next, or the run of skipped ones that it is in; next_ < received_.
 const Client::Waiting& Client::front(uint32_t& end) const noexcept {
+    FW_ASSERT(next_ < received_ && !waiting_.empty(), "record %u of %u", next_, received_);
     auto at = waiting_.find(next_);
     if (at == waiting_.end())
         for (at = waiting_.begin(); at->first + at->second.count <= next_;) ++at;
@@ -283,6 +290,7 @@ bool Client::holdsMessages() const noexcept {
 }
 
 void Client::handMessage(FwNetAction& turn) noexcept {
+    FW_ASSERT(record_.message.size() <= sizeof turn.message, "%zu bytes", record_.message.size());
     turn.kind = FW_NET_ACTION_MESSAGE;
     turn.messageSize = uint32_t(record_.message.size());
     std::transform(record_.message.begin(), record_.message.end(), turn.message,
@@ -444,6 +452,7 @@ void Client::takeTurn(world::World& world, FwNetAction& turn) {
 }
 
 void Client::update(world::World& world, float seconds) {
+    FW_ASSERT(seconds >= 0, "%g s", double(seconds));
     link_.silent += double(seconds);
     retryIn_ = std::max(retryIn_ - double(seconds), 0.0);
     stuck_ += double(seconds);
@@ -510,6 +519,7 @@ bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& siz
         visitNumbers(writer, ownNumber_, wrongSlot_);
         for (const uint32_t hash : ownBlocks_) writer.number(hash);
     }
+    FW_ASSERT(packet_.size() <= def_.packetBytes, "%zu bytes", packet_.size());
     size = link_.send(packet_, room);
     return true;
 }

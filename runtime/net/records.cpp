@@ -1,5 +1,7 @@
 #include "net/records.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 
 namespace fw::net {
@@ -14,6 +16,8 @@ uint32_t RecordRuns::pastRun(uint32_t record) const noexcept {
 
 void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
     core::Writer writer(out);
+    FW_ASSERT(record.hashCount <= record.hashes.size() && record.message.size() <= kMaxMessage,
+              "%u hashes, %zu bytes", record.hashCount, record.message.size());
     const bool isCommand = record.kind == RecordKind::command;
     const auto command = uint32_t(isCommand ? record.command.index() : 0);
     visitNumbers(writer, uint16_t(uint32_t(record.kind) | command << 8), record.step);
@@ -87,6 +91,7 @@ void RecordLog::push(const Record& record, double now) {
 }
 
 void RecordLog::dropBefore(uint32_t record, uint32_t messagesFrom) {
+    FW_ASSERT(record <= end(), "record %u of %u", record, end());
     for (; first_ < record; ++first_, ++gone_) {
         if (first_ < messagesFrom || !isMessage(first_)) continue;
         const std::span<const std::byte> bytes = at(first_);
@@ -110,6 +115,7 @@ void RecordLog::dropMessagesBefore(uint32_t record) noexcept {
 }
 
 uint32_t RecordLog::dropOldestMessage() noexcept {
+    FW_ASSERT(!kept_.empty() && keptBytes_ >= kept_.front().bytes.size());
     const uint32_t record = kept_.front().record;
     keptBytes_ -= kept_.front().bytes.size();
     kept_.pop_front();
@@ -117,6 +123,7 @@ uint32_t RecordLog::dropOldestMessage() noexcept {
 }
 
 RecordLog::Entry RecordLog::entryAt(uint32_t record, uint32_t skipsBefore) const noexcept {
+    FW_ASSERT(record < this->end(), "record %u of %u", record, this->end());
     constexpr uint32_t kMaxScanned = 4096;
     uint32_t end = record;
     if (record < first_) {

@@ -3,6 +3,8 @@
 #include "components/burnable_mesh.h"
 #include "host_limits.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 
 namespace fw::net {
@@ -172,6 +174,7 @@ void Server::drain(world::World& world) {
     const std::pmr::vector<world::ObjectHash>& hashes = recording_.hashes;
     const size_t room = def_.packetBytes - kPacketHead - kStreamHead - kRecordHead - kHashHead;
     const size_t most = std::min(record_.hashes.size(), room / sizeof(uint64_t));
+    FW_ASSERT(most > 0, "%u bytes", def_.packetBytes);
     for (size_t i = 0; i < hashes.size();) {
         record_.kind = RecordKind::hashes;
         record_.step = now;
@@ -284,6 +287,7 @@ void Server::fetchCapture(world::World& world) {
         if (bytes->size() > kMaxState)
             core::fail(FW_ERROR_OUT_OF_MEMORY, "The state has %zu bytes; the limit is %u.",
                        bytes->size(), kMaxState);
+        FW_ASSERT(captures_.size() < captures_.capacity(), "%zu captures", captures_.size());
         captures_.push_back({recorded_, {bytes->begin(), bytes->end(), memory_}, now_});
         captures_.back().head.size = uint32_t(bytes->size());
         stateBytes_ = bytes->size();
@@ -360,6 +364,7 @@ void Server::collectCaptures(world::World& world) {
 }
 
 void Server::begin(Peer& peer, const StateHead& head, size_t bytes) {
+    FW_ASSERT(bytes > 0 && head.id != 0, "%zu bytes of state %u", bytes, head.id);
     move(peer, PeerEvent::begins);
     peer.head = head;
     const size_t room = def_.packetBytes - kPacketHead - kChunkHead;
@@ -380,6 +385,7 @@ double Server::maxBudget() const noexcept {
 bool Server::hasSpareRate(const Peer& peer) const noexcept { return peer.budget > maxBudget() / 2; }
 
 void Server::update(world::World& world, float seconds) {
+    FW_ASSERT(seconds >= 0, "%g s", double(seconds));
     const auto passed = double(seconds);
     now_ += passed;
     drain(world);
@@ -466,6 +472,7 @@ bool Server::writeStream(Peer& peer, bool pieceDue) {
         ++head.count;
     }
     writer.numberAt(countAt, head.count);
+    FW_ASSERT(peer.acknowledged <= peer.cursor, "record %u of %u", peer.cursor, peer.acknowledged);
     peer.sentEnd = std::max(peer.sentEnd, peer.cursor);
     if (head.count > 0) {
         peer.pieceNext = true;
@@ -477,6 +484,7 @@ bool Server::writeStream(Peer& peer, bool pieceDue) {
 
 bool Server::writePiece(Peer& peer, uint32_t piece) {
     if (piece == peer.chunks.count()) return false;
+    FW_ASSERT(piece < peer.chunks.count(), "piece %u of %u", piece, peer.chunks.count());
     const Capture* capture = captureOf(peer.capture);
     const bool tiles = peer.phase == PeerPhase::loadsTiles;
     if (!tiles && !capture) return false;
@@ -509,6 +517,7 @@ bool Server::write(FwPeerId to, std::span<std::byte> room, uint32_t& size) {
         if (!writeStream(peer, piece != peer.chunks.count()) && !writePiece(peer, piece))
             return false;
     }
+    FW_ASSERT(packet_.size() <= def_.packetBytes, "%zu bytes", packet_.size());
     size = peer.link.send(packet_, room);
     peer.budget -= double(size);
     return true;
@@ -574,6 +583,7 @@ const Server::Given* Server::givenOf(const Peer& peer, uint32_t id) noexcept {
 PeerEvent Server::eventOf(uint16_t request) noexcept {
     constexpr PeerEvent events[] = {PeerEvent::requestsNothing, PeerEvent::requestsState,
                                     PeerEvent::requestsTiles};
+    FW_ASSERT(request < std::size(events), "request %u", uint32_t(request));
     return events[request];
 }
 

@@ -1,5 +1,7 @@
 #include "net/transfer.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -20,6 +22,7 @@ void eachOf(Stream& stream, Head& head) {
 void writeChunk(core::Writer& writer, const ChunkHead& head, std::span<const std::byte> state) {
     eachOf(writer, head);
     const size_t from = size_t(head.index) * head.bytes;
+    FW_ASSERT(from < state.size(), "piece %u of %zu bytes", head.index, state.size());
     const auto piece = state.subspan(from, std::min<size_t>(head.bytes, state.size() - from));
     writer.bytes().insert(writer.bytes().end(), piece.begin(), piece.end());
 }
@@ -60,6 +63,8 @@ void ChunkSender::acknowledge(uint32_t base, uint64_t came, uint32_t answered) n
 }
 
 uint32_t ChunkSender::next(double now, double after) const noexcept {
+    FW_ASSERT(base_ <= sentEnd_ && sentEnd_ <= count_, "%u, %u of %u pieces", base_, sentEnd_,
+              count_);
     const uint32_t end = std::min(count_, base_ + kChunkWindow);
     for (uint32_t piece = base_; piece < end; ++piece)
         if ((came_ >> (piece - base_) & 1) == 0 && now - sentAt_[piece % kChunkWindow] >= after)
@@ -86,6 +91,7 @@ bool ChunkReceiver::take(const ChunkHead& head, std::span<const std::byte> piece
         head.state.step != state_.step || head.state.record != state_.record)
         return false;
     if (head.index < base_ || head.index - base_ >= kChunkWindow) return true;
+    FW_ASSERT(head.index < count_, "piece %u of %u", head.index, count_);
     // Room grows with what comes, not with what is claimed.
     const size_t from = size_t(head.index) * chunkBytes_;
     if (bytes_.size() < from + piece.size()) bytes_.resize(from + piece.size());

@@ -241,6 +241,7 @@ void flattenNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode>
     if (colliders.empty() || nodes.empty()) return;
     for (gpu::FlameNode& node : nodes) {
         const float radius = node.centre.w;
+        FW_ASSERT(radius >= 0, "%g m", double(radius));
         const Surface s = nearestSurface(colliders, vec3(node.centre));
         if (!(s.distance < radius) || radius <= 0.0f) continue;
         const vec3 along(node.along);

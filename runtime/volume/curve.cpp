@@ -74,6 +74,7 @@ void Curve::set(std::span<const ControlPoint> points, vec3 up) noexcept {
 }
 
 CurveSample Curve::evaluate(float u) const noexcept {
+    FW_ASSERT(spans_ > 0 && spans_ < kMaxControlPoints, "%u spans", spans_);
     const float x = std::clamp(u, 0.0f, 1.0f) * float(spans_);
     const uint32_t k = std::min(uint32_t(x), spans_ - 1);
     const float t = x - float(k), r = 1.0f - t;
@@ -124,6 +125,7 @@ void placeFlameNodes(const Curve& curve, float length, FlameNodes& nodes) noexce
 }
 
 void raiseNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept {
+    FW_ASSERT(weight >= 0 && weight <= 1, "weight %g", double(weight));
     for (gpu::FlameNode& node : nodes) {
         const float level =
             weight - weight * glm::smoothstep(0.0f, std::max(over, kTiny), node.along.w);

@@ -46,6 +46,7 @@ vec3 slopeAt(const DepthPicture& picture, uint32_t at, uint32_t step, uint32_t b
         out = b.place - a.place;
         return a.shown && b.shown;
     };
+    FW_ASSERT(at < picture.texels.size(), "texel %u", at);
     vec3 ways[4];  // from two before it to two after
     const bool there[4] = {before > 1 && between(at - 2 * step, at - step, ways[0]),
                            before > 0 && between(at - step, at, ways[1]),

@@ -176,6 +176,7 @@ void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
     const float aim = has ? f.def.weight : 0.0f;
     f.tracked += std::clamp(aim - f.tracked, -step, step);
     f.trackTime += dt;
+    FW_ASSERT(f.tracked >= 0 && f.tracked <= 1, "weight %g", double(f.tracked));
     describe(f, air);
     advanceScroll(f.scroll, f.def.look, f.record, dt);
     f.scroll.puff = f.motion.phase;
@@ -190,6 +191,7 @@ FlameAnswer queryFlame(const Flame& f, const Profile& profile, vec3 point,
     FlameAnswer a;
     const float height = f.size.height, diameter = f.size.diameter;
     if (f.power <= 0.0f) return a;
+    FW_ASSERT(height > 0 && diameter > 0, "%g m high, %g m wide", double(height), double(diameter));
     const auto at = locate(f.nodes, point);
     if (at && at->rho < 3.0f) {
         a.s = at->place.s, a.rho = at->rho;

@@ -212,6 +212,7 @@ uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamele
     const float ratio = d / std::max(width(1.0f), 1e-4f);
     const uint32_t n = uint32_t(std::clamp(0.6f * ratio * ratio, 2.0f, float(kMaxFlamelets)));
     FW_ASSERT(n >= 2 && n <= kMaxFlamelets, "%u flames", n);
+    FW_ASSERT(width(float(n)) <= width(1.0f), "%g m", double(width(1.0f)));
     const float each = std::clamp(width(float(n)), 1e-4f, d);  // also of a power that underflows
     for (uint32_t k = 0; k < n; ++k) {                         // a sunflower's pattern
         const float r = 0.5f * std::max(d - each, 0.0f) * std::sqrt((float(k) + 0.5f) / float(n));
@@ -242,6 +243,7 @@ gpu::FlameRecord describeFlame(const FlameLook& l, const FlameSize& size, const 
     const float d = std::max(size.diameter, 1e-4f);
     const float height = std::max(size.height, 1e-4f) / heightFactor(l, size.height, d);
     const float scale = std::min(d, height / 0.75f);
+    FW_ASSERT(scale > 0, "%g m", double(scale));
     r.low.w = d;
     r.high.w = height * size.pulse;
     for (uint32_t o = 0; o < gpu::kFlameOctaves; ++o) r.scroll[int(o)] = float(scroll.octaves[o]);

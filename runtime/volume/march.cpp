@@ -2,6 +2,8 @@
 
 #include "shared/volume_march.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,6 +32,7 @@ vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> n
     const float end = std::min(spans.y, farthest);
     out = {};
     if (!(spans.x < end)) return vec2(0.0f);
+    FW_ASSERT(nodes.size() == gpu::kFlameNodes, "%zu nodes", nodes.size());
     const uint32_t turns = std::clamp(intervals, 1u, gpu::kFlameIntervals);
     gpu::FlameChord chord{spans.x, (end - spans.x) / float(turns), 1e9f, -1e9f};
     const gpu::FlamePieces pieces = gpu::flamePieces(nodes.data());

@@ -116,6 +116,7 @@ void meanContact(FlameMotion& m, float power, float passed) noexcept {
     float sum = 0.0f;
     for (const float part : m.contacts) sum += part;
     m.contactPower = sum / float(kPulseParts);
+    FW_ASSERT(power >= 0 && sum >= 0, "%g kW", double(power));
 }
 
 void spawn(FlameMotion& m, const MotionRules& r, float age) noexcept {
@@ -160,6 +161,7 @@ void advanceMotion(FlameMotion& m, const MotionRules& r, vec3 base,
         const vec3 speed = (base - from) / float(seconds);
         m.baseVelocity = glm::length(speed) <= kTeleport ? speed : vec3(0.0f);
     }
+    FW_ASSERT(steps <= kMaxMotionSteps, "%u steps", steps);
     const float life = lifeOf(r);
     const double interval = double(life / float(kMotionPieces));
     for (uint32_t k = 0; k < steps; ++k) {
@@ -205,6 +207,7 @@ uint32_t motionPoints(const FlameMotion& m, const MotionRules& r,
                       std::array<ControlPoint, kMaxControlPoints>& points) noexcept {
     const float interval = lifeOf(r) / float(kMotionPieces);
     points[0] = {m.base, m.radius};
+    FW_ASSERT(interval > 0, "%g s", double(interval));
     uint32_t older = 0;
     for (uint32_t k = 1; k <= kMotionPieces; ++k) {
         // The place at that age, between a younger and an older particle.

@@ -40,6 +40,7 @@ void checkSize(uint32_t width, uint32_t height) {
 // `read(x, y)`: a texel of the source. Bilinear, texel centres on texel centres.
 template <typename Read>
 void resample(uint32_t width, uint32_t height, const Read& read, Profile& out) {
+    FW_ASSERT(width > 0 && height > 0, "%u x %u texels", width, height);
     bool burns = false;
     for (uint32_t y = 0; y < kH; ++y)
         for (uint32_t x = 0; x < kW; ++x) {

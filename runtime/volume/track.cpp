@@ -103,6 +103,7 @@ uint32_t blendPoints(std::span<const ControlPoint> a, std::span<const ControlPoi
     ca.set(a, up);
     cb.set(b, up);
     constexpr uint32_t kPoints = 16;
+    FW_ASSERT(std::isfinite(weight), "weight %g", double(weight));
     for (uint32_t k = 0; k < kPoints; ++k) {
         const float u = float(k) / float(kPoints - 1);
         const CurveSample pa = ca.at(u * ca.length()), pb = cb.at(u * cb.length());

@@ -38,8 +38,8 @@ void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double
     moveBy(emitter.position, by);
     emitter.def.ground += float(along);
     for (components::JetHit& hit : emitter.hits) moveBy(hit.place, by);
-    for (auto* shields : {&emitter.shields, &emitter.lastObstacles})
-        for (components::JetObstacle& shield : *shields) moveBy(shield.place, by);
+    for (auto* discs : {&emitter.obstacles, &emitter.lastObstacles})
+        for (components::JetObstacle& disc : *discs) moveBy(disc.place, by);
     for (auto* births : {&emitter.births, &emitter.next}) {
         moveBy(births->position, by);
         for (auto& note : births->sparks.notes)
@@ -99,7 +99,7 @@ FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
     checkRoom(emitters_, gpu::kMaxEmitters, "fire emitters");
     FireEmitter emitter;
     components::makeFireEmitter(def, context_.def.seed * 0x9E3779B9u + 77u * (made_ + 1), emitter);
-    emitter.books = flames_.flipbooksOf(def);
+    emitter.flipbooks = flames_.flipbooksOf(def);
     if (def.shape == FW_EMITTER_MESH) (void)scene_.objects.get(def.object);
     emitter.ring = std::max(components::particlesNeeded(emitter), 1u);
     emitter.first = findRing(emitter.ring);

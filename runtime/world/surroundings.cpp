@@ -27,7 +27,7 @@ components::SurroundingAir QuerySystem::listSources() {
     flames_.reserve(0);
     flames_.listShapes();  // as they stand now
     air.walls = flames_.walls();
-    air.shield = exchange_.occlusionView();
+    air.occlusion = exchange_.occlusionView();
     sources_.clear();
     // A light stands a quarter of its flame above what burns (lights.comp).
     const auto add = [&](const FwLight& light) {

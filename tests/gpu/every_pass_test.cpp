@@ -430,7 +430,7 @@ class EveryPass : public GpuTest {
         rig_->backend.setFlipbooks(picture.width, picture.height,
                                    std::as_bytes(std::span(picture.texels)), picture.words);
         rig_->backend.setTileFlipbooks(1u | 2u << 8);
-        emitter_->emitter.books = {1u, 2u | 3u << 16};
+        emitter_->emitter.flipbooks = {1u, 2u | 3u << 16};
     }
 
     // No view shows it, so its prediction stops until one does again.

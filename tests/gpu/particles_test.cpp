@@ -569,8 +569,8 @@ TEST_P(ParticleMotion, AdditiveFireIsNotSorted) {
     def.smoke = 1;
     def.sparks = 0;
     ParticleReference& one = add(def);
-    one.emitter.books.fire = 1;
-    one.emitter.books.fireEmits = true;
+    one.emitter.flipbooks.fire = 1;
+    one.emitter.flipbooks.fireEmits = true;
     makeRig(2000, GetParam(), 2000);
     std::fill_n(rig_->of<uint32_t>(FW_BIND_FLIPBOOKS).begin(), gpu::kFlipbookWords, 0u);
     for (int i = 0; i < 30; ++i) frame(0.05f);

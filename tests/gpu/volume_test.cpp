@@ -623,7 +623,7 @@ class Volume : public GpuTest {
         def.flags |= FW_EMITTER_NO_SMOKE;
         def.sparks = 0;
         ParticleReference emitter(def);
-        if (byBooks) emitter.emitter.books.fire = 1u | 2u << 8 | 3u << 16;
+        if (byBooks) emitter.emitter.flipbooks.fire = 1u | 2u << 8 | 3u << 16;
         gpu::EmitterUpdate update;
         std::vector<gpu::uvec2> groups;
         for (uint32_t first = 0; first < emitter.emitter.ring; first += gpu::kParticleGroup)
@@ -1409,7 +1409,7 @@ TEST_F(Volume, ADollyThroughVolumeFlipbooksAndFieldShowsOneFire) {
         def.flags |= FW_EMITTER_NO_SMOKE;
         def.sparks = 0;
         ParticleReference emitter(def);
-        emitter.emitter.books.fire = 1u | 2u << 8 | 3u << 16;
+        emitter.emitter.flipbooks.fire = 1u | 2u << 8 | 3u << 16;
         gpu::EmitterUpdate update;
         std::vector<gpu::uvec2> groups;
         for (uint32_t first = 0; first < emitter.emitter.ring; first += gpu::kParticleGroup)
@@ -2304,7 +2304,7 @@ TEST_F(Volume, HalfResolutionKeepsBrightnessAndEdges) {
         def.power = 120;
         def.sparks = 0;
         ParticleReference emitter(def);
-        emitter.emitter.books = {1u | 2u << 8, 3u};
+        emitter.emitter.flipbooks = {1u | 2u << 8, 3u};
         gpu::EmitterUpdate update;
         const gpu::uvec2 group(0, 0);
         ASSERT_LE(emitter.emitter.ring, gpu::kParticleGroup);
