@@ -17,7 +17,7 @@ FW_SHARED_CONST uint kDeformTexels = 16u;     // texels sampled in a particle's 
 FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a particle
 FW_SHARED_CONST uint kLinksPerPass = 2u;       // links read at a time
 FW_SHARED_CONST uint kDeformLinkPasses = 4u;       // passes over the links: kDeformRing in all
-// Bending sets: two directions, long and short; each step uses one
+// Bending sets: two directions, long and short; each step uses one.
 FW_SHARED_CONST uint kBendSets = 4u;
 FW_SHARED_CONST uint kDeformRun = 64u;        // particles that need the same number of link passes
 // Quads of a DeviceParticle; offsets of its parts:
@@ -25,12 +25,12 @@ FW_SHARED_CONST uint kDeformParticleQuads = 20u;
 FW_SHARED_CONST uint kParticleLinks = 1u;          // neighbours, one quad per pass
 FW_SHARED_CONST uint kParticleBends = 5u;          // bending constraints, one quad per set
 FW_SHARED_CONST uint kParticleRest = 9u;
-// Neighbours two steps away, one quad per pass; spring model
+// Neighbours two steps away, one quad per pass; spring model.
 FW_SHARED_CONST uint kParticleFarLinks = 10u;
 FW_SHARED_CONST uint kParticleTexels = 14u;
 FW_SHARED_CONST uint kParticleRecession = 18u;
 FW_SHARED_CONST uint kDeformEmbeddingQuads = 4u;
-// Quads of a DeformObject: materials from 4, pins from 20
+// Quads of a DeformObject: materials from 4, pins from 20.
 FW_SHARED_CONST uint kDeformObjectQuads = 36u;
 FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
 FW_SHARED_CONST uint kMaxPins = 8u;
@@ -53,11 +53,11 @@ FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: mass-spring model of th
 
 // DeformParticle::flags, above the material (bits 0..7)
 FW_SHARED_CONST uint kParticleClosed = 0x100u;    // its ring of neighbours closes
-// At rest it lies in the middle of its neighbours, seen along the normal
+// At rest it lies in the middle of its neighbours, seen along the normal.
 FW_SHARED_CONST uint kParticleEven = 0x200u;
 // And of its first bending set; << 1: of its second ...
 FW_SHARED_CONST uint kParticleBendsEven = 0x400u;
-// It, or another particle of its run, has bending constraints
+// It, or another particle of its run, has bending constraints.
 FW_SHARED_CONST uint kParticleHasBends = 0x4000u;
 FW_SHARED_CONST uint kParticleRingShift = 16u;    // number of neighbours: bits 16..19
 FW_SHARED_CONST uint kParticlePassesShift = 20u;   // link passes of its run: bits 20..22
@@ -74,7 +74,7 @@ struct DeformParticle {       // constant, per mesh
     uint cross_[8];              // as ring, two steps away; no length or kNoneTexel: none
     uint crossLength[4];         // m, half floats
     uint texels[16];             // in its ring, in the burn map; padded with kNoneTexel
-    // Direction of recession: -1 along every face's normal where possible
+    // Direction of recession: -1 along every face's normal where possible.
     float outX; float outY; float outZ;
     float limit;                 // m, largest recession
     uint arms[8];                // bending partners behind and ahead, per set; or kNoneTexel
@@ -88,7 +88,7 @@ struct DeviceLinks {      // one link pass
     uint lengths;                // m, half floats; 0: no link
     float rise;                  // m, of bending constraints
 };
-// A DeformParticle on the device: quad by quad, each for all particles of the mesh
+// A DeformParticle on the device: quad by quad, each for all particles of the mesh.
 struct DeviceParticle {
     uint vertex; uint flags; float rise; uint opposite;
     DeviceLinks near_[4];
@@ -101,12 +101,12 @@ struct DeviceParticle {
 };
 FW_SHARED_SIZE(DeviceParticle, 320)
 
-// Constant, per drawn vertex: how its normal follows; device: quad by quad
+// Constant, per drawn vertex: how its normal follows; device: quad by quad.
 struct DeformEmbedding {
     uint node;            // vertex that stores its particle's state
     uint normal;          // at rest, signed 11:11:10
     uint reserved0; uint reserved1;
-    // Chain of vertices around it, padded with the last: triangles that share the normal
+    // Chain of vertices around it, padded with the last: triangles that share the normal.
     uint ring[8];
     float faceX; float faceY; float faceZ;  // unit, their area-weighted normal at rest
     float longest;        // m^2 at rest, longest distance to a ring vertex
@@ -117,12 +117,11 @@ struct ShownVertex {      // drawn instead of mesh::RenderVertex's position and 
     float x; float y; float z;   // m, object space
     uint normal;                 // signed 11:11:10
     float burnt;                 // [0, 1], mean over the particle's texels; never falls
-    // m, spring model: lost per step, and for later steps; kept of a solid: recession
+    // m, spring model: lost per step, and for later steps; kept of a solid: recession.
     float lost; float kept;
     float behind;                // s of appearance time for which the opposite wall has burnt
     float reserved[3];
-    // s of appearance time: burn-through offset, holes come earlier by it
-    float lead;
+    float lead;  // s of appearance time: burn-through offset, holes come earlier by it
 };
 FW_SHARED_SIZE(ShownVertex, 48)
 
@@ -163,8 +162,7 @@ FW_SHARED_SIZE(DeformObject, 576)
 struct DeformPush {       // push constants of the deformation passes
     uint now;             // tick of the displayed state
     uint first;           // group in the list
-    // Of the substep; above bit 0: bending set of the step; recede: number of steps
-    uint parity;
+    uint parity;  // of the substep; above bit 0: bending set of the step; recede: number of steps
     float step;           // s
     vec4 wind;            // m/s, world; w: s, cosmetic time
     vec4 up;              // world; w: ticks since the step's start
