@@ -10,7 +10,6 @@ FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) F
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 #include "emitter/clusters.glsl"
 #include "emitter/flipbooks.glsl"
-#include "emitter/nearer.glsl"
 #include "lib/tile.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
