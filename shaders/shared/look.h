@@ -210,7 +210,7 @@ FW_SHARED_CONST uint kQuadSpark = 3u;
 FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
 FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
 FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
-// Half widths by which flame quads are nearer to the camera, so that a wall behind does not cut them.
+// Half widths by which flame quads are nearer to the camera: a wall behind does not cut them.
 FW_SHARED_CONST float kQuadNearer = 0.35f;
 
 // Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads
