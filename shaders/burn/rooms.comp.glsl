@@ -23,7 +23,7 @@ void main() {
         if (room == 0u) continue;
         uint low = objectCounters[slot].energyLow, high = objectCounters[slot].energyHigh;
         uint drawnLow = objectCounters[slot].drawnLow, drawnHigh = objectCounters[slot].drawnHigh;
-        // It has entered the room: earlier heat does not count
+        // It has entered the room: earlier heat does not count.
         if ((objectCounters[slot].air & kAirKnown) == 0u) {
             drawnLow = low;
             drawnHigh = high;

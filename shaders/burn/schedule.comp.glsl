@@ -40,7 +40,7 @@ void schedule(uint worldTile, bool dense) {
     }
     // Loops: devices without branches would also load under an `if`.
     for (bool plays = (push.switches & kSwitchPlayback) != 0u; plays; plays = false) {
-        // Due once it goes live
+        // Due once it goes live.
         if (isPlayingBack(objectCounters[tile.object].playsUntil, push.now)) {
             if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
             return;

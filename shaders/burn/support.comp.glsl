@@ -57,7 +57,7 @@ uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
 // Distance that a neighbour offers.
 uint offer(uint worldTile) {
     uint flag = tileState[worldTile].flag;
-    // It burns soon, or is known
+    // It burns soon, or is known.
     if (tileState[worldTile].lastChange == kNeverChanged) return kFar;
     return (flag & kTileSolid) != 0u ? distanceOf(flag) : kFar;
 }

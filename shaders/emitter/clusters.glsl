@@ -23,7 +23,7 @@ vec3 flamePlaceOf(BurnTile tile, float side) {
 // Wood flames as long as it lasts, but most heat is released near the front. age: ticks since
 // ignition; share: of the duration.
 float flameFade(BurnMaterial material, float age, float share) {
-    float lasting = share * max(6.0 * looks[material.look].charTime, 8.0);
+    float lasting = share * max(6.0 * appearances[material.look].charTime, 8.0);
     return 0.04 + 0.96 * exp(-age * (1.0 / 4096.0) * material.timeScale / lasting);
 }
 float flameFade(BurnTile tile) {

@@ -10,7 +10,6 @@ FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) F
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 #include "emitter/clusters.glsl"
 #include "emitter/flipbooks.glsl"
-#include "emitter/nearer.glsl"
 #include "lib/tile.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
@@ -65,7 +64,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (age < ago) continue;  // it caught later
         uint material =
             tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
-        MaterialAppearance look = looks[materials[material].look];
+        MaterialAppearance look = appearances[materials[material].look];
         float lasts = materials[material].flameTicks == kNoneTexel
                           ? 1e9
                           : float(materials[material].flameTicks);
@@ -124,7 +123,8 @@ void main() {
 
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
-            MaterialAppearance mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
+            MaterialAppearance mainLook =
+                appearances[materials[tile.object * kMaterialsPerObject].look];
             float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
@@ -143,7 +143,7 @@ void main() {
                              smoothstep(0.0, 1.0, foot.left);
             if (strength < 0.02) continue;
             BurnObject object = objects[tile.object];
-            MaterialAppearance look = looks[materials[foot.material].look];
+            MaterialAppearance look = appearances[materials[foot.material].look];
             vec3 rest = restOf(tile.object, texels[object.texelBase + foot.texel]);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             bool skinned = (object.flags & kObjectSkinned) != 0u;

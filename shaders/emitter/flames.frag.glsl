@@ -42,7 +42,7 @@ vec4 sampleFlipbook(vec2 uv) {
     return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after),
                              inBetween.x);
 }
-// K between the coldest and the hottest texel, around the quad's temperature
+// K between the coldest and the hottest texel, around the quad's temperature.
 const float kFlipbookSpan = 600.0;
 const float kFlipbookHides = 1.05;  // coverage relative to brightness, matching volumes
 #else

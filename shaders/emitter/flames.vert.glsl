@@ -8,7 +8,6 @@ FW_READ(FLAMES) FW_READ(DRAW_ARGS)
 #ifdef FW_FLIPBOOKS
 #include "emitter/flipbooks.glsl"
 #endif
-#include "emitter/nearer.glsl"
 #include "lib/billboard.glsl"
 
 layout(constant_id = 3) const uint kPart = kPartAll;

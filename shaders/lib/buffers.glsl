@@ -119,7 +119,8 @@ const uint kRunBits = 3u;
 #define FW_BUFFER_VERTICES(access) FW_BUFFER(VERTICES, access, uvec4, meshVertices)
 
 // Effects.
-#define FW_BUFFER_APPEARANCES(access) FW_BUFFER(APPEARANCES, access, MaterialAppearance, looks)
+#define FW_BUFFER_APPEARANCES(access) \
+    FW_BUFFER(APPEARANCES, access, MaterialAppearance, appearances)
 #define FW_BUFFER_LIGHTS(access) FW_BUFFER(LIGHTS, access, BurnLight, lights)
 #define FW_BUFFER_LIGHT_CELLS(access) FW_BUFFER(LIGHT_CELLS, access, uint, clusters)
 #define FW_BUFFER_FLAMES(access) FW_BUFFER(FLAMES, access, FlameQuad, flameQuad)

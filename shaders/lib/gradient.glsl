@@ -1,5 +1,6 @@
 // A word of FW_BIND_GRADIENT. Low byte: soot. Texel with a time: its gradient. Wet texel: distance
-// to the fire. A texel that was put out has no soot: see burn.h.
+// to the fire. Texel that was put out (kOut,
+// kOutWet): ticks that it burnt until then, without soot.
 
 // Two half floats without their last four bits.
 uint packGradient(vec2 slope) {

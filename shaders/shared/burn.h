@@ -5,8 +5,7 @@
 #define FW_SHARED_BURN_H
 #include "shared/types.h"
 
-// Bindings of set 0, one number per buffer in all passes. A layout contains only the pass's
-// buffers.
+// Bindings of set 0, one number per buffer in all passes. A layout has only the pass's buffers.
 #define FW_BIND_OBJECTS 0  // BurnObject[], by object slot
 #define FW_BIND_MATERIALS 1  // BurnMaterial[], 8 per object slot
 #define FW_BIND_TEXELS 2  // uvec2[]: position xyz u16, material | flags u16 (per mesh)
@@ -19,10 +18,8 @@
 #define FW_BIND_TILE_STATE 9  // TileState[] (per object)
 #define FW_BIND_LIST_A 10  // uint[]: front list, world tile ids (ping)
 #define FW_BIND_LIST_B 11  // uint[]: front list (pong)
-#define FW_BIND_RUN 12  // uvec4[]: due tiles: world tile, object, first texel + kRunWoken, mesh
-                        // tile
-#define FW_BIND_SCRATCH 13  // uint[]: from the start gathered rows (row, mask, texel, object), from
-                            // the end rim texels (row * 8 + column); 96 words per due tile
+#define FW_BIND_RUN 12  // uvec4[]: due tiles, see lib/buffers.glsl
+#define FW_BIND_SCRATCH 13  // uint[]: gathered rows and rim texels, 96 words per due tile
 #define FW_BIND_MASKS 14  // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
 #define FW_BIND_COUNTERS 15  // IterationCounters[], see the kRow constants
 #define FW_BIND_EVENTS 16  // TexelEvent[]
@@ -32,9 +29,7 @@
 #define FW_BIND_BURN_B 20  // uint[]: tiles that flame (pong)
 #define FW_BIND_BURN_TILES 21  // BurnTile[]: what `reduce` says of each of them
 #define FW_BIND_PREDICT 22  // uint[]: predicted arrival ticks, or codes; cosmetic
-#define FW_BIND_GRADIENT 23  // uint[]: gradient of the predicted arrival, s/texel, and soot
-                             // (lib/gradient.glsl); for kOut and kOutWet: ticks that the texel
-                             // burnt before it was put out
+#define FW_BIND_GRADIENT 23  // uint[]: slope of the predicted arrival, and soot: lib/gradient.glsl
 #define FW_BIND_PREDICT_LIST_A 24
 #define FW_BIND_PREDICT_LIST_B 25
 #define FW_BIND_PROBES 26  // uvec2[]: object slot, texel
@@ -50,8 +45,7 @@
 #define FW_BIND_TILE_HEAT 36  // TileHeat[] (per object): heat that other objects send to a tile
 #define FW_BIND_HEAT_MATERIALS 37  // HeatMaterial[], 8 per object slot
 #define FW_BIND_HOT_LISTS 38  // uvec2[]: hot tiles, list A in x, list B in y
-#define FW_BIND_TILE_FIRE 39  // float[] (per object): W of a tile's thick fuel in the last heat
-                              // step
+#define FW_BIND_TILE_FIRE 39  // float[]: W of a tile's thick fuel in the last heat step
 #define FW_BIND_EXCHANGE_OBJECTS 40  // ExchangeObject[], by object slot: see exchange.h
 #define FW_BIND_EXCHANGE_TILES 41  // ExchangeTile[] (per mesh)
 #define FW_BIND_SOURCES 42  // FireSource[] (per object)
@@ -60,18 +54,15 @@
 #define FW_BIND_HEAT_OCCLUDERS 45  // HeatOccluder[kMaxHeatOccluders]
 #define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot
 #define FW_BIND_ROOMS 47  // Room[kMaxRooms]: see room.h
-#define FW_BIND_SHOWN 48  // ShownVertex[]: replaces the mesh's position and normal (per object);
-                          // also vertex input
+#define FW_BIND_SHOWN 48  // ShownVertex[]: instead of the mesh's (per object); vertex input
 #define FW_BIND_DEFORM_PARTICLES 49  // DeformParticle[] (per mesh)
 #define FW_BIND_DEFORM_EMBEDDINGS 50  // DeformEmbedding[] (per mesh)
 #define FW_BIND_DEFORM_OBJECTS 51  // DeformObject[], by object slot
 #define FW_BIND_DEFORM_GROUPS 52  // uvec2[]: object slot, first of 64 particles or vertices
-#define FW_BIND_SOFT 53  // vec4[]: 3 per shown vertex of a sheet: position, position, normal and
-                         // bend
+#define FW_BIND_SOFT 53  // uvec4[]: state of the particles of sheets, see lib/deform.glsl
 #define FW_BIND_ROOM_AIR 54  // RoomAir[kMaxRooms]
 #define FW_BIND_HEAT_OCCLUSION 55  // uint[]: heat-occlusion grid, see exchange.h
-#define FW_BIND_SKIN_TEXELS 56  // uvec4[]: three vertices and two unorm16 weights per texel (per
-                                // mesh)
+#define FW_BIND_SKIN_TEXELS 56  // uvec4[]: per texel three vertices, two unorm16 weights
 #define FW_BIND_SKIN_SOURCES 57  // uint[]: host vertex of each drawn vertex (per mesh)
 #define FW_BIND_SKIN_GIVEN 58  // uint[]: copies of the hosts' vertex buffers (per object)
 #define FW_BIND_REFINE_WORK 60  // uint[]: work lists of the frame, see kRefineWork... in refine.h
@@ -82,16 +73,14 @@
 #define FW_BIND_REFINE_WORDS 65  // uint[]: token table; per mesh: items that each tile warms
 #define FW_BIND_REFINE_ITEMS 66  // RefineLevel[]: edges, then interiors (per object)
 #define FW_BIND_REFINE_HEAT 67  // uint[], as items: kRefineHeat...
-#define FW_BIND_REFINE_LEVELS 68  // uvec2[], per triangle of an object: levels, first output
-                                  // triangle
+#define FW_BIND_REFINE_LEVELS 68  // uvec2[], per triangle: levels, first output triangle
 #define FW_BIND_REFINE_VERTICES 69  // RefineVertex[], per slot of an object
 #define FW_BIND_REFINE_INDICES 70  // uint[]: output triangles
 #define FW_BIND_REFINE_DRAWS 71  // uint[]: indexed indirect draws, 8 per object slot
-#define FW_BIND_PENDING 72  // uint[], as state: tick at which a texel catches, which `commit`
-                            // writes. Also valid for receptive texels beside a source, until a
-                            // neighbour changes
-#define FW_BIND_SETTLED 73  // uint[]: per row of eight texels, bits of the settled ones (see
-                            // `arrival`)
+// FW_BIND_PENDING: as state: tick at which a texel catches, which `commit` writes. Also valid for
+// receptive texels beside a source, until a neighbour changes.
+#define FW_BIND_PENDING 72  // uint[]
+#define FW_BIND_SETTLED 73  // uint[]: settled texels of a row of eight, bits, see `arrival`
 #define FW_BIND_VERTICES 74  // mesh::RenderVertex[], as three uvec4 (per mesh)
 #define FW_BIND_REFINE_CUTS 75  // vertices along holes (per object), see kRefineCut... in refine.h
 #define FW_BIND_REFINE_CUT_DRAWS 76  // uint[]: indirect draws, 8 per object slot
@@ -105,8 +94,7 @@
 #define FW_BIND_FIELD_MASKS 113  // uint[]: one byte per cell (per field)
 #define FW_BIND_FIELD_COUNTERS 114  // FieldCounters[], by field slot
 #define FW_BIND_FIELD_RUNS 115  // uvec2[]: field slot, step number; for steps also the unit << 16
-#define FW_BIND_FIELD_SHOWN 116  // uint[]: displayed cell of the frame (per field), see
-                                 // field_draw.h
+#define FW_BIND_FIELD_SHOWN 116  // uint[]: displayed cells (per field), see field_draw.h
 #define FW_BIND_FIELD_DRAWS 117  // FieldDraw[]: visible fields
 #define FW_BIND_SPARKS 119  // SparkSource[]: sources of the frame, see spark.h
 #define FW_BIND_EMITTERS 120  // ParticleEmitter[]: fire emitters of the frame, see particle.h
@@ -147,19 +135,18 @@ FW_SHARED_CONST uint kObjectNoDamage = 128u; // burns without visible damage
 FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire follows the shown vertices
 FW_SHARED_CONST uint kObjectDepthFirst = 0x2000u;  // draws depth before colour
 FW_SHARED_CONST uint kObjectUnseen = 0x4000u;  // no view shows it: not predicted
-// A view shows it again: prediction restarts from the burning texels
+// A view shows it again: prediction restarts from the burning texels.
 FW_SHARED_CONST uint kObjectShownAgain = 0x8000u;
 FW_SHARED_CONST uint kObjectRoomShift = 16u;   // 8 bits: index of its room, plus 1
 
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
 FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
-// Due only because neighbouring texels just caught
-FW_SHARED_CONST uint kTileLitBeside = 0x80000u;
+FW_SHARED_CONST uint kTileLitBeside = 0x80000u;  // due only because neighbouring texels just caught
 FW_SHARED_CONST uint kTileCorrected = 0x100000u; // a texel of this run was corrected, not just lit
 FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
-// `wake` may be something other than a known arrival
+// `wake` may be something other than a known arrival.
 FW_SHARED_CONST uint kTilePendingUnknown = 128u;
 FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
 FW_SHARED_CONST uint kTileWarm = 64u;        // and takes part in every heat step, see workDue
@@ -172,7 +159,7 @@ FW_SHARED_CONST uint kTileMaterialShift = 14u; // 3 bits
 FW_SHARED_CONST uint kTileFacts = 0x1FF00u;
 FW_SHARED_CONST uint kTileSolid = 0x20000u;
 FW_SHARED_CONST uint kTileFalling = 0x40000u;
-// Fire, heat, water or soot has shown on it; never cleared
+// Fire, heat, water or soot has shown on it; never cleared.
 FW_SHARED_CONST uint kTileMarked = 0x200000u;
 FW_SHARED_CONST uint kTileDistanceShift = 22u; // 10 bits
 
@@ -193,7 +180,7 @@ FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
 FW_SHARED_CONST uint kSwitchRefineFull = 64u;
 FW_SHARED_CONST uint kSwitchCrossing = 128u;
 FW_SHARED_CONST uint kSwitchNoDepthFirst = 256u;
-// internal: an object or the world limits its fire
+// internal: an object or the world limits its fire.
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;
 FW_SHARED_CONST uint kSwitchPlayback = 0x80000u;     // internal: an object may play a baked burn
 FW_SHARED_CONST uint kSwitchDisplayOnly = 0x100000u;    // internal: `reduce` writes BurnTiles only
@@ -217,7 +204,7 @@ FW_SHARED_CONST uint kEventPlaybackSpan = 7u;
 // above kEventKindBits. No other event of the step addresses either object.
 FW_SHARED_CONST uint kEventCarry = 8u;
 FW_SHARED_CONST uint kEventKindBits = 8u;
-// Of a gate's kind: the texel must still stand, else be gone
+// Of a gate's kind: the texel must still stand, else be gone.
 FW_SHARED_CONST uint kGateShut = 0x100u;
 FW_SHARED_CONST uint kGateMore = 0x200u;  // of a gate's kind: the next gate must open, too
 FW_SHARED_CONST uint kGates = 2u;         // gates of an event, at most
@@ -265,7 +252,7 @@ struct BurnMaterial { // integers of the spread law of one material on one objec
     int driveZ;
     uint flags;       // 1: can burn
     float powerPerArea;  // W/m^2 while it flames; cosmetic, lights, queries
-    // Appearance seconds per second: pace and spread rate against the appearance's own
+    // Appearance seconds per second: pace and spread rate against the appearance's own.
     float timeScale;
     float thickness;  // m
     float roughness;
@@ -288,7 +275,7 @@ struct TileState {
 FW_SHARED_SIZE(TileState, 16)
 
 struct IterationCounters {  // zeroed before a frame from kRowIteration on, except the carried list
-    // Gathered rows: arrival, commit; X also covers runCount
+    // Gathered rows: arrival, commit; X also covers runCount.
     uint workX; uint workY; uint workZ; uint workCount;
     uint rimX; uint rimY; uint rimZ; uint rimCount;     // gathered rim texels: arrival_rim
     uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of gather, due tiles
@@ -337,7 +324,7 @@ FW_SHARED_CONST uint kHeldByLimit = 1u;     // burning tiles are at their limit:
 FW_SHARED_CONST uint kHeldStopped = 2u;  // its lifetime is over
 FW_SHARED_CONST uint kHeldWarm = 4u;     // not held, but heated by others
 
-// Heat that other objects send to a tile; a writer also adds the tile to the hot list
+// Heat that other objects send to a tile; a writer also adds the tile to the hot list.
 struct TileHeat {
     uint flux;        // W/m^2, before the surface's absorption
     uint pilot;       // 1: a flame is near
@@ -354,7 +341,7 @@ FW_SHARED_SIZE(ProbeAnswer, 16)
 struct BurnTile {     // one burning 8x8 tile, for flames and lights (cosmetic)
     vec4 positionArea;  // world m; flaming area m^2
     vec4 normalPower;   // world normal; W
-    // Slot, local tile, flaming texels, mean age in ticks
+    // Slot, local tile, flaming texels, mean age in ticks.
     uint object; uint tile; uint texels; uint age;
 };
 FW_SHARED_SIZE(BurnTile, 48)

@@ -17,7 +17,7 @@ FW_SHARED_CONST uint kDeformTexels = 16u;     // texels sampled in a particle's 
 FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a particle
 FW_SHARED_CONST uint kLinksPerPass = 2u;       // links read at a time
 FW_SHARED_CONST uint kDeformLinkPasses = 4u;       // passes over the links: kDeformRing in all
-// Bending sets: two directions, long and short; each step uses one
+// Bending sets: two directions, long and short; each step uses one.
 FW_SHARED_CONST uint kBendSets = 4u;
 FW_SHARED_CONST uint kDeformRun = 64u;        // particles that need the same number of link passes
 // Quads of a DeviceParticle; offsets of its parts:
@@ -28,7 +28,7 @@ FW_SHARED_CONST uint kParticleRest = 9u;
 FW_SHARED_CONST uint kParticleTexels = 10u;
 FW_SHARED_CONST uint kParticleRecession = 14u;
 FW_SHARED_CONST uint kDeformEmbeddingQuads = 4u;
-// Quads of a DeformObject: materials from 4, pins from 20
+// Quads of a DeformObject: materials from 4, pins from 20.
 FW_SHARED_CONST uint kDeformObjectQuads = 36u;
 FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
 FW_SHARED_CONST uint kMaxPins = 8u;
@@ -51,11 +51,11 @@ FW_SHARED_CONST uint kDeformExtended = 4u;    // an extension's pass moves its p
 
 // DeformParticle::flags, above the material (bits 0..7)
 FW_SHARED_CONST uint kParticleClosed = 0x100u;    // its ring of neighbours closes
-// At rest it lies in the middle of its neighbours, seen along the normal
+// At rest it lies in the middle of its neighbours, seen along the normal.
 FW_SHARED_CONST uint kParticleEven = 0x200u;
 // And of its first bending set; << 1: of its second ...
 FW_SHARED_CONST uint kParticleBendsEven = 0x400u;
-// It, or another particle of its run, has bending constraints
+// It, or another particle of its run, has bending constraints.
 FW_SHARED_CONST uint kParticleHasBends = 0x4000u;
 FW_SHARED_CONST uint kParticleRingShift = 16u;    // number of neighbours: bits 16..19
 FW_SHARED_CONST uint kParticlePassesShift = 20u;   // link passes of its run: bits 20..22
@@ -70,7 +70,7 @@ struct DeformParticle {       // constant, per mesh
     float x; float y; float z;   // m, rest
     float area;                  // m^2, a third of its triangles
     uint texels[16];             // in its ring, in the burn map; padded with kNoneTexel
-    // Direction of recession: -1 along every face's normal where possible
+    // Direction of recession: -1 along every face's normal where possible.
     float outX; float outY; float outZ;
     float limit;                 // m, largest recession
     uint bendEnds[8];            // bending partners behind and ahead, per set; or kNoneTexel
@@ -84,7 +84,7 @@ struct DeviceLinks {      // one link pass
     uint lengths;                // m, half floats; 0: no link
     float rise;                  // m, of bending constraints
 };
-// A DeformParticle on the device: quad by quad, each for all particles of the mesh
+// A DeformParticle on the device: quad by quad, each for all particles of the mesh.
 struct DeviceParticle {
     uint vertex; uint flags; float rise; uint opposite;
     DeviceLinks near_[4];
@@ -96,12 +96,12 @@ struct DeviceParticle {
 };
 FW_SHARED_SIZE(DeviceParticle, 256)
 
-// Constant, per drawn vertex: how its normal follows; device: quad by quad
+// Constant, per drawn vertex: how its normal follows; device: quad by quad.
 struct DeformEmbedding {
     uint node;            // vertex that stores its particle's state
     uint normal;          // at rest, signed 11:11:10
     uint reserved0; uint reserved1;
-    // Chain of vertices around it, padded with the last: triangles that share the normal
+    // Chain of vertices around it, padded with the last: triangles that share the normal.
     uint ring[8];
     float faceX; float faceY; float faceZ;  // unit, their area-weighted normal at rest
     float longest;        // m^2 at rest, longest distance to a ring vertex
@@ -112,12 +112,11 @@ struct ShownVertex {      // drawn instead of mesh::RenderVertex's position and 
     float x; float y; float z;   // m, object space
     uint normal;                 // signed 11:11:10
     float burnt;                 // [0, 1], mean over the particle's texels; never falls
-    // m, spring model: lost per step, and for later steps; kept of a solid: recession
+    // m, spring model: lost per step, and for later steps; kept of a solid: recession.
     float lost; float kept;
     float behind;                // s of appearance time for which the opposite wall has burnt
     float reserved[3];
-    // s of appearance time: burn-through offset, holes come earlier by it
-    float lead;
+    float lead;  // s of appearance time: burn-through offset, holes come earlier by it
 };
 FW_SHARED_SIZE(ShownVertex, 48)
 
@@ -158,8 +157,7 @@ FW_SHARED_SIZE(DeformObject, 576)
 struct DeformPush {       // push constants of the deformation passes
     uint now;             // tick of the displayed state
     uint first;           // group in the list
-    // Of the substep; above bit 0: bending set of the step; recede: number of steps
-    uint parity;
+    uint parity;  // of the substep; above bit 0: bending set of the step; recede: number of steps
     float step;           // s
     vec4 wind;            // m/s, world; w: s, cosmetic time
     vec4 up;              // world; w: ticks since the step's start

@@ -12,18 +12,18 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
 FW_SHARED_CONST uint kExchangeSteps = 4u;       // steps from one exchange to the next
 FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
-// Exchanges until all tiles of a receiver have been updated
+// Exchanges until all tiles of a receiver have been updated.
 FW_SHARED_CONST uint kExchangeRounds = kSleepSteps;
 FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
-// Cells along the longest side of an object, for its sources
+// Cells along the longest side of an object, for its sources.
 FW_SHARED_CONST uint kSourceGrid = 4u;
 FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most
 FW_SHARED_CONST uint kMaxHeatOccluders = 64u;
-// Cells along an axis of the occlusion grid, at most
+// Cells along an axis of the occlusion grid, at most.
 FW_SHARED_CONST uint kMaxOcclusionSide = 256u;
 FW_SHARED_CONST uint kMaxOcclusionCells = 2097152u;   // cells of the grid, at most
 FW_SHARED_CONST uint kMaxBakedOcclusionCells = 262144u;    // cells filled by objects, at most
-// Slot; number of sources; then source | visible share, of 255, << 24
+// Slot; number of sources; then source | visible share, of 255, << 24.
 FW_SHARED_CONST uint kReceiverWords = 66u;
 FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
 FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
@@ -207,7 +207,7 @@ FW_SHARED_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
 // Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those
 // that objects fill and the number of such cells before these. Then two words for each of them:
 // object key and texel. A cell of an object is solid while that texel stands.
-// | slot | material << 24: it never gives way
+// Of a cell that never gives way; | slot | material << 24.
 FW_SHARED_CONST uint kOcclusionPermanent = 0x80000000u;
 FW_SHARED_CONST uint kOcclusionSlotMask = 0xFFFFFFu;
 
@@ -327,7 +327,7 @@ FW_SHARED_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
     }
 }
 
-// Objects at both ends, and the distance within which their own cells do not count
+// Objects at both ends, and the distance within which their own cells do not count.
 struct OcclusionEnds {
     uint from;       // slot
     uint to;
@@ -360,7 +360,7 @@ FW_SHARED_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, 
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return e;
     uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
-    // mm until one cell above it
+    // mm until one cell above it.
     uint leaves = divide(side * isqrtNear(squaredLength(d)), maxU(over, 1u));
     e.toSpare = maxU(e.toSpare, minU(leaves + leaves / 2u, side * 6u));
     return e;
@@ -395,7 +395,7 @@ FW_SHARED_FN uint power04(uint x) {
                 : rest == 2u ? 7132u
                 : rest == 3u ? 9410u
                              : 12417u;
-    // Q15
+    // Q15.
     uint m = 32768u + ((10470u * f) >> 15u) + ((2140u * ((f * (32768u - f)) >> 15u)) >> 15u);
     return ((base * m) >> 19u) << (k / 5u * 2u + fours);
 }

@@ -22,11 +22,9 @@ FW_SHARED_CONST uint kMaxFieldSpread = 4096u;   // Q15: an eighth; twice as much
 
 FW_SHARED_CONST uint kMaxFields = 256u;          // of a world
 FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: steps of a field, at most
-// Units per group; a unit is eight strips of four columns
-FW_SHARED_CONST uint kFieldUnits = 8u;
-// Of a cell's mask; below: strength of the paint there
-FW_SHARED_CONST uint kFieldWall = 255u;
-// Bits of FieldRules::open: particles may leave the field there
+FW_SHARED_CONST uint kFieldUnits = 8u;  // units per group; a unit is eight strips of four columns
+FW_SHARED_CONST uint kFieldWall = 255u;  // of a cell's mask; below: strength of the paint there
+// Bits of FieldRules::open: particles may leave the field there.
 FW_SHARED_CONST uint kFieldOpenLeft = 1u;
 FW_SHARED_CONST uint kFieldOpenRight = 2u;
 FW_SHARED_CONST uint kFieldOpenBottom = 4u;
@@ -43,13 +41,13 @@ struct FieldSource {     // rectangle of cells that emits
 FW_SHARED_SIZE(FieldSource, 32)
 
 struct FieldRules {      // of one field
-    // Q7, external force (wind, buoyancy, weight): 128 moves all particles one cell per step
+    // Q7, external force (wind, buoyancy, weight): 128 moves all particles one cell per step.
     int forceX;
     int forceY;
     uint inertia;        // Q8, weight of the cell's mean motion
     uint chaos;          // Q8, weight of a random direction, shared by 4 x 4 cells and 4 steps
 
-    // Q15, [0, kMaxFieldSpread]: share of a difference that diffuses to each neighbour
+    // Q15, [0, kMaxFieldSpread]: share of a difference that diffuses to each neighbour.
     uint spread;
     uint memory;         // Q7, share of its motion that a particle keeps per step
     uint death;          // Q16, share that dies per step
@@ -78,7 +76,7 @@ FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) {
     return n | (motion.x << 16u) | (motion.y << 24u);
 }
 FW_SHARED_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
-// All ones for a wall
+// All ones for a wall.
 FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }
 FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kMaxFieldCell; }
 
@@ -169,7 +167,7 @@ struct FieldCounters {   // totals
     uint emittedLow; uint emittedHigh;  // low + 2^32 high
     uint diedLow; uint diedHigh;
     uint leftLow; uint leftHigh;
-    // Of the first and second cells: bit k is set if rows 8k.. hold particles
+    // Of the first and second cells: bit k is set if rows 8k.. hold particles.
     uint bands0; uint bands1;
     uint steps;
     uint pad1;
@@ -203,9 +201,9 @@ FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
 struct FieldGiver {
     uint n;
     uint own;        // particles times spread
-    // Q15, limit of diffusion to each neighbour: an eighth of the particles that no force moves
+    // Q15, limit of diffusion to each neighbour: an eighth of the particles that no force moves.
     uint most;
-    // Shares by its motion, directions 0 to 3; negative: the opposite direction
+    // Shares by its motion, directions 0 to 3; negative: the opposite direction.
     int v0; int v1; int v2; int v3;
     uint ahead;      // first dithers, Q15: directions 7 0 1 2 and 3 4 5 6
     uint behind;

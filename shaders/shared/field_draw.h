@@ -14,7 +14,7 @@ FW_SHARED_CONST uint kFieldUp = 16u;
 FW_SHARED_CONST float kFieldFull = 96.0f;    // particles of a cell displayed as full
 
 struct FieldDraw {
-    // m, world: middle of the lower edge; w: time since the last step, [0, 1] of a step
+    // m, world: middle of the lower edge; w: time since the last step, [0, 1] of a step.
     vec4 place;
     vec4 size;           // m: width, height, depth; w: opacity
     vec4 right;          // axes in the world; w: detail

@@ -16,7 +16,7 @@ FW_SHARED_CONST float kFlipbookMaxKelvin = 2000.0f;   // K where it is 1
 FW_SHARED_CONST uint kMaxFlipbooks = 32u;         // of a world
 FW_SHARED_CONST uint kMaxFlipbookFrames = 256u;
 FW_SHARED_CONST uint kFlipbookRecordWords = 16u;
-// First word of the rectangles
+// First word of the rectangles.
 FW_SHARED_CONST uint kFlipbookRects = kMaxFlipbooks * kFlipbookRecordWords;
 FW_SHARED_CONST uint kFlipbookWords = kFlipbookRects + kMaxFlipbooks * kMaxFlipbookFrames * 2u;
 FW_SHARED_CONST uint kFlipbookLoops = 1u;   // FlipbookRecord::flags: plays in a loop

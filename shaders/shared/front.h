@@ -25,7 +25,7 @@ FW_SHARED_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.
 FW_SHARED_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
 FW_SHARED_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
 FW_SHARED_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
-// TileState::lastChange of a tile that never changed
+// TileState::lastChange of a tile that never changed.
 FW_SHARED_CONST uint kNeverChanged = 0x80000000u;
 
 struct FrontDrive {  // slowness of one texel: A * (1 - e.v)
@@ -110,7 +110,7 @@ FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMateria
     ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
     uint s0 = mulShift(m.sigma0, noise, 7u);
     if (m.ceiling != 0u) {
-        // Q10
+        // Q10.
         int down =
             -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)), n12) >> 12);
         if (down > 0) {

@@ -5,7 +5,7 @@
 #include "shared/types.h"
 
 FW_SHARED_BEGIN
-// Texels per side of a tile that the composite draws or skips
+// Texels per side of a tile that the composite draws or skips.
 FW_SHARED_CONST uint kHalfTile = 16u;
 
 // Push constants of all half-resolution passes. A texel covers four pixels, starting at twice its

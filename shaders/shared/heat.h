@@ -19,10 +19,9 @@ FW_SHARED_CONST uint kScorchBegins = 7568u;     // 473 K: begins to darken
 FW_SHARED_CONST uint kMaxFlux = 500000u;       // W/m^2, incoming or net: beyond any fire
 FW_SHARED_CONST uint kMaxFilm = 1023u;         // g/m^2
 FW_SHARED_CONST uint kMaxMoist = 255u;         // 1/128 kg/kg
-// Steps of flaming under a film before the flame dies, minus one
+// Steps of flaming under a film before the flame dies, minus one.
 FW_SHARED_CONST uint kSoakSteps = 3u;
-// 1/16 K from ambient that still count as asleep
-FW_SHARED_CONST uint kSleepTolerance = 16u;
+FW_SHARED_CONST uint kSleepTolerance = 16u;  // 1/16 K from ambient that still count as asleep
 FW_SHARED_CONST uint kColdWaterSteps =
     32u;  // steps from one update to the next of a tile that only has cold water
 // Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to
@@ -49,7 +48,7 @@ FW_SHARED_CONST uint kHeatDries = 8u;           // its film has dried
 // HeatMaterial::flags
 FW_SHARED_CONST uint kHeatBurns = 1u;
 FW_SHARED_CONST uint kHeatThick = 2u;
-// 9 bits, Q8: reduction of burning strength by lack of air
+// 9 bits, Q8: reduction of burning strength by lack of air.
 FW_SHARED_CONST uint kHeatLacksShift = 8u;
 
 struct HeatTexel {

@@ -32,7 +32,7 @@ FW_SHARED_CONST uint kSurfaceCold = 128u; // only triangles far from all traces 
 
 // Layers of the appearance texture array: 512^2 RGBA8, tiling, with mips.
 FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
-// R primary crack distance, G secondary, BA slopes of cracks
+// R primary crack distance, G secondary, BA slopes of cracks.
 FW_SHARED_CONST float kLayerChar = 1.0f;
 FW_SHARED_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
 FW_SHARED_CONST float kLookTextureSide = 512.0f;
@@ -168,7 +168,7 @@ struct SurfaceDraw {
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
     float maxFilm;          // g/m^2 of water that the surface holds; 0: no heat buffer
     float now;               // with kDrawPlaced: s on the clock of its holes
-    // With kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach
+    // With kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach.
     float nearness;
 };
 FW_SHARED_SIZE(SurfaceDraw, 128)
@@ -210,6 +210,8 @@ FW_SHARED_CONST uint kQuadSpark = 3u;
 FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
 FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
 FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
+// Half widths by which flame quads are nearer to the camera: a wall behind does not cut them.
+FW_SHARED_CONST float kQuadNearer = 0.35f;
 
 // Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads
 // are first those of burning tiles (at most kFlameCapacity), then of particles, then emissive ones:
@@ -218,7 +220,7 @@ FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuad
 FW_SHARED_CONST uint kFlameTileQuads = 4u;       // word: requested quads of tiles
 FW_SHARED_CONST uint kFlameParticleQuads = 5u;   // word: quads of particles that hide
 FW_SHARED_CONST uint kFlameEmissiveQuads = 6u;      // word: emissive quads
-// words: draw arguments of the emissive quads, in buffer order
+// words: draw arguments of the emissive quads, in buffer order.
 FW_SHARED_CONST uint kFlameEmissiveDraw = 8u;
 FW_SHARED_CONST uint kFlameOrder = 12u;      // first word of the order
 FW_SHARED_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads

@@ -15,7 +15,7 @@ FW_SHARED_CONST uint kMaxEmitters = 256u;
 FW_SHARED_CONST float kMaxParticleStep = 0.0334f;  // s; longer frames take several steps
 FW_SHARED_CONST uint kMaxParticleSteps = 32u;
 
-// m: when the world's origin shifts, eddies shift along, modulo this
+// m: when the world's origin shifts, eddies shift along, modulo this.
 FW_SHARED_CONST float kEddyField = 4096.0f;
 FW_SHARED_CONST uint kNoBurnRow = 0xFFFFFFFFu;
 FW_SHARED_CONST uint kTileTries = 32u;  // tiles that a birth samples, at most, and
@@ -39,8 +39,7 @@ struct ParticleEmitter {  // one emitter in one frame
     vec4 turbulence; // m/s, 1/m, m/s that eddies travel along `direction`, rad wander of a stream
     vec4 size;       // m width at birth, m per m of path, m per s, length over width at birth
     vec4 life;       // s, its variance, smoke's life as a share of fire's, share that leaves smoke
-    // K at birth, K at the end, density of smoke, m along x by which eddies shifted
-    vec4 heat;
+    vec4 heat;  // K at birth, K at the end, density of smoke, m along x by which eddies shifted
     uint first;      // first particle
     uint ring;       // capacity
     uint head;       // ring slot of the next birth

@@ -34,7 +34,7 @@ FW_SHARED_CONST uint kRefineStays = 8u;    // some are not
 FW_SHARED_CONST uint kRefineGoing = 16u;   // some of the others are lit
 FW_SHARED_CONST uint kRefineLost = 32u;    // interior: the whole triangle is burnt through; kept
 
-// Coarse triangle; corners and sides counter-clockwise, side e from e to e + 1
+// Coarse triangle; corners and sides counter-clockwise, side e from e to e + 1.
 struct RefineTriangle {
     uint edge[3];
     uint flags;          // bit e: side e runs from the edge's high end; 4 bits each from 4, 8, 12:
@@ -57,12 +57,10 @@ FW_SHARED_SIZE(RefineEdge, 16)
 struct RefineSlot {      // a vertex at rest
     float x, y, z;       // m, object space
     uint offset;         // signed 11:11:10 of [-2, 2]: moving by d * offset moves every face by d
-    // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
-    uint reach;
+    uint reach;  // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
     uint texel;          // 24 bits: lower left of four; 8 bits: material
     uint weights;        // 4 x 8 bits: of texel, + 1, + width, + width + 1
-    // 24 bits: lower left texel of the opposite wall; 4 + 4 bits: place between
-    uint opposite;
+    uint opposite;  // 24 bits: lower left texel of the opposite wall; 4 + 4 bits: place between
 };                       // texels, 1/16; or kRefineOpposed
 FW_SHARED_SIZE(RefineSlot, 32)
 

@@ -11,9 +11,8 @@ FW_SHARED_CONST uint kMaxRooms = 64u;
 // Oxygen by volume, 2^-32 of the air.
 FW_SHARED_CONST uint kAirOutside = 899795648u;  // 20.95 %
 FW_SHARED_CONST uint minKAir = 515396076u;    // 12 %: nothing burns below
-// Burning strength grows by 1/256 per step; 3 % to full
-FW_SHARED_CONST uint kAirStep = 503316u;
-// Of room steps, which precede heat steps
+FW_SHARED_CONST uint kAirStep = 503316u;  // burning strength grows by 1/256 per step; 3 % to full
+// Of room steps, which precede heat steps.
 FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;
 
 struct Room {     // as the host defines it

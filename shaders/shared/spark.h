@@ -21,7 +21,7 @@ FW_SHARED_CONST uint kSparkLooks = 8u;       // collision samples per leg
 FW_SHARED_CONST uint kSparkHalvings = 8u;    // bisections of a hit
 FW_SHARED_CONST float kSparkShutter = 0.02f; // s of motion shown as a streak
 FW_SHARED_CONST float kSparkClear = 0.005f;  // m: least distance to surfaces
-// M that a spark may be inside a wall between two samples
+// M that a spark may be inside a wall between two samples.
 FW_SHARED_CONST float kSparkBehind = 6.0f;
 FW_SHARED_CONST float kSparkPlume = 1.7f;    // in drag times: how long the plume lifts a spark
 

@@ -21,19 +21,17 @@ FW_SHARED_CONST uint kFlameOctaves = 4u;         // per flame, at most
 FW_SHARED_CONST uint kProfileWidth = 64u;        // texels over rho in [0, kProfileReach]
 FW_SHARED_CONST uint kProfileHeight = 128u;      // texels over y in [0, 1]
 FW_SHARED_CONST float kProfileReach = 1.25f;     // rho at the profile's right edge
-// |p| over the tube's radius beyond which nothing burns
-FW_SHARED_CONST float kFlameReach = 1.2f;
+FW_SHARED_CONST float kFlameReach = 1.2f;  // |p| over the tube's radius beyond which nothing burns
 FW_SHARED_CONST float kFlameTop = 2.6f;          // y beyond which nothing burns
-// Noise cells after which noise repeats along a flame
-FW_SHARED_CONST float kFlameWrap = 4096.0f;
-// E|flameNoise|, which removes the bias of ridged noise
+FW_SHARED_CONST float kFlameWrap = 4096.0f;  // noise cells after which noise repeats along a flame
+// E|flameNoise|, which removes the bias of ridged noise.
 FW_SHARED_CONST float kFlameMeanAbs = 0.177f;
 FW_SHARED_CONST float kFlamePuffLag = 1.6f;      // a bulge travels slower than the gas
 
 struct FlameNode {        // point of a curve, evenly spaced
     vec4 centre;          // xyz m, world; w: m, radius of the tube
     vec4 along;           // xyz unit: normal of the bisector plane; w: m from the base
-    // Xyz unit, of the rotation-minimising frame; w: >= 1, widening of the tube by a wall
+    // Xyz unit, of the rotation-minimising frame; w: >= 1, widening of the tube by a wall.
     vec4 side;
     vec4 squeeze;         // xyz: unit, flattening direction of a wall; w: [0, 0.9] strength
 };
@@ -41,8 +39,7 @@ FW_SHARED_SIZE(FlameNode, 64)
 
 struct FlameRecord {      // one flame in one frame
     vec4 low;             // xyz m, world: bounds of all its visible parts; w: m, diameter
-    // w: m, height of the profile; the visible flame is higher, see heightFactor
-    vec4 high;
+    vec4 high;  // w: m, height of the profile; the visible flame is higher, see heightFactor
     vec4 scroll;          // noise cells that each octave has risen, [0, kFlameWrap)
     vec4 place;           // xyz: noise cells, offset in the noise; w: [0, 1) phase of the puffing
     vec4 tint;            // rgb linear; w: weight, 0 is black body
@@ -139,7 +136,7 @@ FW_SHARED_FN float flameCornerDot(uint key, vec3 f) {
     return float(int(h)) * f.x + float(int(h << 11)) * f.y + float(int(h << 21)) * f.z;
 }
 
-// Cell of a noise position: offsets from both corners, weights, hashes of corners
+// Cell of a noise position: offsets from both corners, weights, hashes of corners.
 struct FlameLattice {
     vec3 f; vec3 g; vec3 u;
     uint i; uint i1; uint j; uint j1; uint k; uint k1;
@@ -399,7 +396,7 @@ FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius,
 
 struct FlameSun {         // sunlight for a ray's smoke
     vec3 light;           // scattered towards the camera by smoke in the open
-    // Unit, towards the sun, in the frame of the curve's end: along side, across it, along
+    // Unit, towards the sun, in the frame of the curve's end: along side, across it, along.
     vec3 to;
 };
 

@@ -11,8 +11,7 @@ FW_SHARED_CONST uint kMaxVolumeFlames = 256u;   // of a world, in a frame
 FW_SHARED_CONST uint kFirePresets = 9u;         // first layers of the profile texture
 FW_SHARED_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
 FW_SHARED_CONST uint kProfileBytes = 32768u;    // per layer: 64 x 128 pairs of half floats
-// Slabs of a flame where the host's depth is only tested
-FW_SHARED_CONST uint kVolumeSlabs = 6u;
+FW_SHARED_CONST uint kVolumeSlabs = 6u;  // slabs of a flame where the host's depth is only tested
 FW_SHARED_CONST float kVolumeWhite = 1.5f;      // host units of soot of luminance 1
 
 FW_SHARED_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
@@ -109,8 +108,7 @@ FW_SHARED_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
     return at;
 }
 
-// March pixels per side; a workgroup marches a tile
-FW_SHARED_CONST uint kMarchTileSide = 8u;
+FW_SHARED_CONST uint kMarchTileSide = 8u;  // march pixels per side; a workgroup marches a tile
 FW_SHARED_CONST uint kMarchPixelWords = 4u;  // per march pixel and slab: half floats red and green,
                                              // blue and alpha; packSlabRange; unused
 
@@ -130,7 +128,7 @@ FW_SHARED_CONST uint kMarchQuarterSide = 4u;
 FW_SHARED_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
 FW_SHARED_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
 FW_SHARED_CONST uint kMarchTileWords = 12u;    // pixels begin after whole texels of these
-// Quarter x, y
+// Quarter x, y.
 FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }
 
 // Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a
@@ -180,11 +178,11 @@ struct CompositePush {
     uint slabs;
     uint tilesX; uint tilesY;
     uint flags; uint samples;
-    // March pixels per side of a pixel: 2, 4, 8, in one tile; 0: a march pixel is a pixel or more
+    // March pixels per side of a pixel: 2, 4, 8, in one tile; 0: a march pixel is a pixel or more.
     uint perPixel;
     float from; float to; // see passesDither
     uint reserved0; uint reserved1;
-    // Low x, y, high x, y, march pixels from the origin: a finer march shows the flame there
+    // Low x, y, high x, y, march pixels from the origin: a finer march shows the flame there.
     vec4 window;
     vec4 base;            // as VolumeDraw's
 };

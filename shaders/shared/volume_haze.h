@@ -9,7 +9,7 @@ FW_SHARED_BEGIN
 
 FW_SHARED_CONST float kHazeTop = 3.2f;        // y at which the column no longer refracts
 FW_SHARED_CONST float kHazeReach = 1.35f;     // half widths of the plume from the axis to its end
-// Rad, at the greatest contrast and noise slope: air's 2.9e-4, exaggerated
+// Rad, at the greatest contrast and noise slope: air's 2.9e-4, exaggerated.
 FW_SHARED_CONST float kHazeBend = 0.012f;
 FW_SHARED_CONST uint kHazeColumns = 18u;      // of the grid on whose corners it is evaluated
 FW_SHARED_CONST uint kHazeRows = 28u;

@@ -25,7 +25,7 @@ FW_SHARED_CONST uint kFlameSmokeSteps = 4u;   // per ray
 
 struct FlameChord {       // range of a ray in a tube
     float from; float gap;    // m along the ray: first knot, distance of knots
-    // In gaps from the first knot: range that may burn; first > last: none
+    // In gaps from the first knot: range that may burn; first > last: none.
     float first; float last;
 };
 

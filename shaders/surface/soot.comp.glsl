@@ -48,7 +48,7 @@ void sootRow(uint i, uint row) {
     bool marks = false;
     for (uint x = 0u; near != 0u && x < 8u; ++x) {
         uint t = predict[at + x];
-        // The word has another meaning then
+        // The word has another meaning then.
         if (t == kInert || t == kOut || t == kOutWet) continue;
         vec3 place = inWorld(object, restOf(object, texels[texelAt + x]) + shift);
         float soot = 0.0;

@@ -20,7 +20,7 @@ const bool kCold = (kVariant & kSurfaceCold) != 0u;
 
 FW_READ(PREDICT) FW_READ(GRADIENT) FW_BUFFER(HEAT, readonly, uint, heat)
 FW_UNIFORM(LIGHTS, BurnLight, lights[kSurfaceLights])
-FW_UNIFORM(APPEARANCES, MaterialAppearance, looks[kAppearanceRows])
+FW_UNIFORM(APPEARANCES, MaterialAppearance, appearances[kAppearanceRows])
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 layout(push_constant) uniform Push { SurfaceDraw draw; };
@@ -283,7 +283,7 @@ float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
 
 void main() {
     if (kCold && inSootOffset.x > 0.0) discard;
-    MaterialAppearance look = looks[min(draw.look, kAppearanceRows - 1u)];
+    MaterialAppearance look = appearances[min(draw.look, kAppearanceRows - 1u)];
     if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
     // The rim uses the host's thickness, within the range of the appearance.
     if (draw.thickness > 0.0)

@@ -8,14 +8,13 @@
 FW_READ(VOLUME_RAYS)
 layout(push_constant) uniform Push { CompositePush draw; };
 
-// of the flame, from the middle of its first
-layout(location = 0) centroid out vec2 outPixel;
+layout(location = 0) centroid out vec2 outPixel;  // of the flame, from the middle of its first
 layout(location = 1) flat out uint outWords;  // first of the slab
 layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance; 1/m: depth
 layout(location = 3) flat out ivec4 outPixels; // first and last valid
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
-// Clip z / w of the plane through the base; VolumeDraw::base.w
+// Clip z / w of the plane through the base; VolumeDraw::base.w.
 layout(location = 6) centroid out vec2 outBase;
 
 void main() {

@@ -8,7 +8,7 @@
 layout(push_constant) uniform Push { HazePush draw; };
 
 layout(location = 0) centroid out vec3 outRay;   // m, see VolumeDraw
-// Deflection per m behind the column; m along the ray to the column
+// Deflection per m behind the column; m along the ray to the column.
 layout(location = 1) centroid out vec4 outBend;
 
 #include "shared/volume_march.h"

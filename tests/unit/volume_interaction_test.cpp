@@ -368,7 +368,6 @@ TEST(VolumeNeighbours, LeanMergeAndNeverPop) {
         const float gap = distance - 0.6f;
         if (gap < 0.98f * height) {
             EXPECT_GT(out[0].merged, 0.0f) << distance;
-            EXPECT_EQ(out[0].group, out[1].group);
             EXPECT_GT(out[0].height, height * 0.999f);
         } else if (gap > height) {
             EXPECT_EQ(out[0].merged, 0.0f);

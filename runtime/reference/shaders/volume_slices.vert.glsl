@@ -9,8 +9,7 @@ layout(push_constant) uniform Push { SlicesPush draw; };
 
 #include "reference/volume_slices.h"
 
-// m: off the axis, along it, the tube's radius
-layout(location = 0) centroid out vec4 outPlace;
+layout(location = 0) centroid out vec4 outPlace;  // m: off the axis, along it, the tube's radius
 layout(location = 1) centroid out vec3 outOff;          // m, relative to the camera
 layout(location = 2) flat out vec2 outShows;
 layout(location = 3) flat out float outDepth;  // m along the view
