@@ -15,7 +15,7 @@ void bakeThickness(const Surface& surface, const TexelGrid& grid,
     const RayTree tree(surface, memory);
     // Skips the texel's own surface, and its neighbours where the surface bends.
     const float least = float(std::max(0.01 * grid.side, 1e-5 * surface.extent));
-    FW_ASSERT(least > 0 && least < RayTree::kReach, "%g m", double(least));
+    FW_ASSERT(least > 0, "%g m", double(least));
     int64_t stepsLeft = RayTree::kStepBudget + RayTree::kStepsPerTexel * int64_t(grid.count());
     for (uint32_t texel = 0; texel < grid.count(); ++texel) {
         if (!grid.real(texel)) continue;
