@@ -168,19 +168,16 @@ class Reader : public core::Reader, public Archive<Reader> {
         const uint32_t size = count("bytes of a plane", 1);
         values_.assign(cells, 0);
         if (!readPlane(take(size), width, mask, values_))
-            core::fail(FW_ERROR_BAD_DATA, "The plane \"%s\" of the save is damaged.", name);
+            core::failData("The plane \"%s\" of the save is damaged.", name);
         for (size_t i = 0; i < cells; ++i) {
             if (values_[i] > most)
-                core::fail(FW_ERROR_BAD_DATA,
-                           "The plane \"%s\" of the save holds %u; the limit is %u.", name,
-                           values_[i], most);
+                core::failData("The plane \"%s\" of the save holds %u; the limit is %u.", name,
+                               values_[i], most);
             set(i, values_[i]);
         }
     }
     void require(bool good, const char* name) {
-        if (!good)
-            core::fail(FW_ERROR_BAD_DATA, "The %s's %s is out of its limits.", core::Reader::name(),
-                       name);
+        if (!good) core::failData("The %s's %s is out of its limits.", core::Reader::name(), name);
     }
 
  private:
@@ -192,11 +189,10 @@ inline void readHead(core::Reader& reader, const char (&magic)[5], uint32_t vers
     uint32_t word = 0, found = 0;
     reader.number(word);
     if (word != magicWord(magic))
-        core::fail(FW_ERROR_BAD_DATA, "The %s does not begin with \"%s\".", reader.name(), magic);
+        core::failData("The %s does not begin with \"%s\".", reader.name(), magic);
     reader.number(found);
     if (found != version)
-        core::fail(
-            FW_ERROR_BAD_DATA,
+        core::failData(
             "The %s has format version %u; this library reads version %u alone. Read it with "
             "the %s library that wrote it.",
             reader.name(), found, version, found < version ? "older" : "newer");

@@ -30,8 +30,7 @@ FwQueryId QuerySystem::requestArrival(FwBurnableMeshId id, const float position[
     Query query = makeQuery(id, position);
     Object& object = *scene_.objects.get(id);
     if (object.data.flags & core::reserved::kBurning)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u burns by an extension and has no arrivals.", id.index1);
+        core::refuse("Burnable mesh %u burns by an extension and has no arrivals.", id.index1);
     if (!object.forecast) {
         auto forecast = core::Owned<Forecast>::make(context_.memory, context_.memory);
         mesh::reserveArrivals(forecast->arrivals, scene_.domainOf(object));

@@ -22,27 +22,21 @@ uint32_t endOfStep(uint32_t tick) noexcept {
 void BurnSystem::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
     context_.recorder.mayChange();
     Object &from = *scene_.objects.get(fromId), &to = *scene_.objects.get(toId);
-    if (&from == &to)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "Burnable mesh %u gives its burn to itself.",
-                   fromId.index1);
+    if (&from == &to) core::refuse("Burnable mesh %u gives its burn to itself.", fromId.index1);
     if ((from.data.flags | to.data.flags) & core::reserved::kBurning)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u or %u burns by an extension; such burns are not carried.",
-                   fromId.index1, toId.index1);
+        core::refuse("Burnable mesh %u or %u burns by an extension; such burns are not carried.",
+                     fromId.index1, toId.index1);
     if (components::hasHeat(from.data) != components::hasHeat(to.data))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u %s FW_BURNABLE_LITE and %u %s; both have it or neither.",
-                   fromId.index1, components::hasHeat(from.data) ? "lacks" : "has", toId.index1,
-                   components::hasHeat(to.data) ? "lacks" : "has");
+        core::refuse("Burnable mesh %u %s FW_BURNABLE_LITE and %u %s; both have it or neither.",
+                     fromId.index1, components::hasHeat(from.data) ? "lacks" : "has", toId.index1,
+                     components::hasHeat(to.data) ? "lacks" : "has");
     for (const Object* one : {&from, &to}) {
         if (one->play.burn1 != 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Burnable mesh %u plays a baked burn; fwWorld_StopBurn makes it live.",
-                       one->id.index1);
+            core::refuse("Burnable mesh %u plays a baked burn; fwWorld_StopBurn makes it live.",
+                         one->id.index1);
         if (one->carryEnd > context_.clock.tick)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Burnable mesh %u is part of another transfer until the next step.",
-                       one->id.index1);
+            core::refuse("Burnable mesh %u is part of another transfer until the next step.",
+                         one->id.index1);
     }
     const mesh::BurnDomain &source = scene_.domainOf(from), &target = scene_.domainOf(to);
     float diagonal = 0;
@@ -55,10 +49,10 @@ void BurnSystem::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
     std::pmr::vector<uint32_t> match(context_.memory);
     const uint32_t matched = mesh::matchTexels(source, target, reach, match);
     if (matched * 2 < target.report.realTexels)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "%u of %u texels of burnable mesh %u have one of %u within %g m; at least half "
-                   "of them must. The meshes are of one shape.",
-                   matched, target.report.realTexels, toId.index1, fromId.index1, double(reach));
+        core::failData(
+            "%u of %u texels of burnable mesh %u have one of %u within %g m; at least half "
+            "of them must. The meshes are of one shape.",
+            matched, target.report.realTexels, toId.index1, fromId.index1, double(reach));
     reservePending(matched);
     const auto now = uint32_t(context_.clock.tick);
     const uint32_t kind = gpu::kEventCarry | (from.slot + 1) << gpu::kEventKindBits;
@@ -87,8 +81,7 @@ void BurnSystem::continueBurn(Object& to, const BurnLifecycle& from) noexcept {
 
 void BurnSystem::checkGone(const Object& object) const {
     if (gives(object.slot))
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
             "that.",
             object.id.index1);
@@ -110,8 +103,7 @@ void BurnSystem::checkCarry(const PendingTexel& event, const Clock& clock) {
         !scene_.domainOf(**owned).real(event.water) ||
         (((*owned)->data.flags | to.data.flags) & core::reserved::kBurning) != 0 ||
         components::hasHeat((*owned)->data) != components::hasHeat(to.data))
-        core::fail(
-            FW_ERROR_BAD_DATA,
+        core::failData(
             "The save carries the burn of burnable mesh %u, texel %u, to burnable mesh %u at "
             "tick %u, and is of tick %llu. That cannot be.",
             slot + 1, event.water, event.object + 1, event.tick,

@@ -52,10 +52,10 @@ void readLog(std::span<const std::byte> bytes, uint64_t identity,
     reader.number(world);
     reader.number(sum);
     if (sum != core::hashBytes(bytes.subspan(kHeadBytes)))
-        core::fail(FW_ERROR_BAD_DATA, "The log is damaged or cut: its checksum is not right.");
+        core::failData("The log is damaged or cut: its checksum is not right.");
     if (world != identity)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The log is of a world with other rules, objects or meshes than this one's.");
+        core::failData(
+            "The log is of a world with other rules, objects or meshes than this one's.");
     const uint32_t count = reader.count("entries", kMinEntry);
     entries.clear();
     entries.reserve(count);
@@ -67,13 +67,12 @@ void readLog(std::span<const std::byte> bytes, uint64_t identity,
         reader.number(kind);
         entry.tick = tick;
         if (tick % gpu::kStepTicks != 0 || (i > 0 && entry.tick < entries.back().tick))
-            core::fail(FW_ERROR_BAD_DATA, "Entry %u of the log is at tick %u.", i, tick);
+            core::failData("Entry %u of the log is at tick %u.", i, tick);
         entry.save = kind == kSaveEntry;
         if (!entry.save) readCommand(kind, reader, entry.command);
         entries.push_back(entry);
     }
-    if (reader.left() != 0)
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the log.", reader.left());
+    if (reader.left() != 0) core::failData("%zu bytes follow the log.", reader.left());
 }
 
 std::span<const LogEntry> fromTick(std::span<const LogEntry> entries, uint64_t tick,
@@ -96,9 +95,7 @@ void PersistenceSystem::startLog() {
 void PersistenceSystem::stopLog() noexcept { recorder_.log = {}; }
 
 const std::pmr::vector<std::byte>& PersistenceSystem::fetchLog() {
-    if (!recorder_.log)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The world records no log; fwWorld_StartCommandLog first.");
+    if (!recorder_.log) core::refuse("The world records no log; fwWorld_StartCommandLog first.");
     if (recorder_.log->lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the log was recorded; it has a gap.");
@@ -117,9 +114,7 @@ void PersistenceSystem::openLog(std::span<const std::byte> bytes) {
 }
 
 float PersistenceSystem::playLog(uint64_t untilTick) {
-    if (!playedLog_)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "There is no log to play; fwWorld_OpenCommandLog first.");
+    if (!playedLog_) core::refuse("There is no log to play; fwWorld_OpenCommandLog first.");
     recorder_.mayChange();
     std::span<const LogEntry> ahead = fromTick(playedLog_->entries, context_.clock.tick,
                                                context_.loadedTick == context_.clock.tick);

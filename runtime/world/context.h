@@ -46,8 +46,7 @@ struct HostFrame {
 template <class Pool>
 void checkRoom(const Pool& pool, uint32_t most, const char* names) {
     if (pool.live() >= most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u %s are there; the limit is %u.", pool.live(),
-                   names, most);
+        core::refuse("%u %s are there; the limit is %u.", pool.live(), names, most);
 }
 
 inline void setFlag(uint32_t& flags, uint32_t flag, bool on) noexcept {

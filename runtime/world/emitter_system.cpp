@@ -87,8 +87,7 @@ uint32_t EmitterSystem::findRing(uint32_t particles) {
         first = ring.first + ring.second;
     }
     if (first > context_.def.maxParticles || particles > context_.def.maxParticles - first)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "The emitter needs %u particles in a row; FwWorldDef::maxParticles is %u, and %u "
             "of them are not free.",
             particles, context_.def.maxParticles, std::min(first, context_.def.maxParticles));
@@ -324,8 +323,8 @@ void EmitterSystem::restore(const SlottedList<EmitterSnapshot>& from) noexcept {
 void EmitterSystem::apply(const WetPatch& command) {
     FireEmitter& emitter = emitters_.get(emitters_.findId(command.emitter));
     if (!emitter.stream || command.patch >= components::kJetPatches)
-        core::fail(FW_ERROR_BAD_DATA, "A command wets patch %u of fire emitter %u.", command.patch,
-                   command.emitter + 1);
+        core::failData("A command wets patch %u of fire emitter %u.", command.patch,
+                       command.emitter + 1);
     for (components::JetPatches* patches : {&emitter.stream->patches, &emitter.stream->before})
         components::wetPatch((*patches)[command.patch], command.grams, command.tick);
     context_.recorder.record(command);

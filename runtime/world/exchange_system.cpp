@@ -77,8 +77,7 @@ ExchangeSystem::ExchangeSystem(const WorldContext& context, Scene& scene, const 
 void ExchangeSystem::setFlags(uint32_t given) {
     context_.recorder.mayChange();
     if (given & ~kWorldFlags)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "flags is 0x%x; the known flags are 0x%x.", given,
-                   kWorldFlags);
+        core::refuse("flags is 0x%x; the known flags are 0x%x.", given, kWorldFlags);
     const uint32_t flags = given & kHeatTransferModes;
     transfer_.objectFlags = given & ~kHeatTransferModes;
     transfer_.unsent |= flags != 0 && flags != transfer_.flags;
@@ -98,11 +97,10 @@ void checkHeatOccluder(const components::Pose& pose, const float halfSize[3], co
     for (int i = 0; i < 3; ++i) {
         const float half = halfSize[i] * pose.scale * std::abs(pose.stretch[i]);
         if (half > 30.0f * 1.0001f)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s makes the occluder " FW_LENGTH " " FW_LENGTH_UNIT
-                       " to each side along its axis %d; the limit is " FW_LENGTH " " FW_LENGTH_UNIT
-                       ". Put several side by side.",
-                       field, double(half), i, 30.0);
+            core::refuse("%s makes the occluder " FW_LENGTH " " FW_LENGTH_UNIT
+                         " to each side along its axis %d; the limit is " FW_LENGTH
+                         " " FW_LENGTH_UNIT ". Put several side by side.",
+                         field, double(half), i, 30.0);
     }
 }
 
@@ -111,9 +109,8 @@ void checkHeatOccluder(const components::Pose& pose, const float halfSize[3], co
 FwHeatOccluderId ExchangeSystem::addHeatOccluder(const FwHeatOccluderDef& def) {
     ++scene_.geometryVersion;
     if (def.flags != 0 || def.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwHeatOccluderDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
-                   def.reserved);
+        core::refuse("FwHeatOccluderDef::flags is 0x%x and reserved is %u; both are zero.",
+                     def.flags, def.reserved);
     HeatOccluderEntry entry;
     entry.pose = components::makePose(def.transform, "FwHeatOccluderDef::transform");
     checkLengths(def.halfSize, 3, "FwHeatOccluderDef::halfSize", 0.0f, 30.0f);
@@ -721,13 +718,13 @@ void ExchangeSystem::capture(ExchangeSnapshot& to) const {
 void ExchangeSystem::checkSnapshot(const ExchangeSnapshot& from) {
     checkSlots(from.occluders, occluders_, "occluder", "occluders");
     if ((from.flags & ~kWorldFlags) != 0)
-        core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
-                   from.flags, kWorldFlags);
+        core::failData("The save's flags are 0x%x; the known flags are 0x%x.", from.flags,
+                       kWorldFlags);
     checkCount(from.latchedOccluders.size(), gpu::kMaxHeatOccluders, "latched occluders");
     if (std::ranges::adjacent_find(from.seen, [](const Seen& a, const Seen& b) {
             return !bySlots(a, b);
         }) != from.seen.end())
-        core::fail(FW_ERROR_BAD_DATA, "The save's order of lines of sight is out of its limits.");
+        core::failData("The save's order of lines of sight is out of its limits.");
     transfer_.pairs.reserve(from.pairs.size());
     transfer_.loadedSeen.reserve(from.seen.size());
     transfer_.occluders.reserve(from.latchedOccluders.size());

@@ -45,9 +45,8 @@ volume::vec4 quaternion(const float r[3][3]) noexcept {
 void checkSides(const FwFireColliderDef& def, uint32_t most) {
     for (const uint32_t side : {def.columns, def.rows})
         if (side < 2 || side > most)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwFireColliderDef has %u columns and %u rows; the limits are [2, %u].",
-                       def.columns, def.rows, most);
+            core::refuse("FwFireColliderDef has %u columns and %u rows; the limits are [2, %u].",
+                         def.columns, def.rows, most);
 }
 
 template <class Check>
@@ -55,7 +54,7 @@ void checkNumbers(const float* numbers, size_t count, const char* name, float lo
                   Check check) {
     char field[64];
     std::snprintf(field, sizeof field, "FwFireColliderDef::%s", name);
-    if (!numbers) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", field);
+    if (!numbers) core::refuse("%s is null.", field);
     check(numbers, unsigned(count), field, low, high);
 }
 
@@ -63,9 +62,8 @@ void checkNumbers(const float* numbers, size_t count, const char* name, float lo
 void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEntry& entry) {
     volume::Collider shape;
     if (def.kind > FW_COLLIDER_DEPTH)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwFireColliderDef::kind is %u; the limits are [0, %u].", def.kind,
-                   uint32_t(FW_COLLIDER_DEPTH));
+        core::refuse("FwFireColliderDef::kind is %u; the limits are [0, %u].", def.kind,
+                     uint32_t(FW_COLLIDER_DEPTH));
     checkLengths(def.position, 3, "FwFireColliderDef::position", -1e6f, 1e6f);
     shape.kind = volume::ColliderKind(def.kind);
     shape.place = volume::vecOf(def.position);
@@ -100,8 +98,7 @@ void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEnt
             break;
         }
         case volume::ColliderKind::Callback:
-            if (!def.distance)
-                core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::distance is null.");
+            if (!def.distance) core::refuse("FwFireColliderDef::distance is null.");
             shape.distance = &callHost;
             shape.user = &entry;
             break;

@@ -151,9 +151,8 @@ FwFireProfileId FlameSystem::createProfile(const FwFireProfileDef& def) {
 void FlameSystem::destroyProfile(FwFireProfileId id) {
     const uint32_t users = profileIds_.get(id).users;
     if (users > 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Fire profile %u (generation %u) is used by %u fire(s); destroy them first.",
-                   id.index1, id.generation, users);
+        core::refuse("Fire profile %u (generation %u) is used by %u fire(s); destroy them first.",
+                     id.index1, id.generation, users);
     profileIds_.destroy(id);  // the texels stay until another one takes the layer
 }
 

@@ -33,19 +33,18 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
     auto book = core::Owned<flipbook::Flipbook>::make(context_.memory, context_.memory);
     if (def.preset == FW_FLIPBOOK_CUSTOM) {
         if (!def.cooked)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwFlipbookDef::cooked is null, and FwFlipbookDef::preset is "
-                       "FW_FLIPBOOK_CUSTOM.");
+            core::refuse(
+                "FwFlipbookDef::cooked is null, and FwFlipbookDef::preset is "
+                "FW_FLIPBOOK_CUSTOM.");
         if (def.cookedSize > (uint64_t(1) << 30))
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFlipbookDef::cookedSize is %llu.",
-                       static_cast<unsigned long long>(def.cookedSize));
+            core::refuse("FwFlipbookDef::cookedSize is %llu.",
+                         static_cast<unsigned long long>(def.cookedSize));
         const auto* bytes = static_cast<const std::byte*>(def.cooked);
         flipbook::readFlipbook({bytes, size_t(def.cookedSize)}, *book);
     } else {
         if (def.cooked)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
-                       def.preset);
+            core::refuse("FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
+                         def.preset);
         flipbook::readFlipbook(flipbook::presetFlipbook(def.preset, context_.memory), *book);
     }
     const FwFlipbookId id = flipbooks_.create();
@@ -64,10 +63,10 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
 void FlameSystem::destroyFlipbook(FwFlipbookId id) {
     const uint32_t users = flipbooks_.get(id).users;
     if (users > 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Flipbook %u (generation %u) is used by %u emitter(s) and flames; destroy or "
-                   "change them first.",
-                   id.index1, id.generation, users);
+        core::refuse(
+            "Flipbook %u (generation %u) is used by %u emitter(s) and flames; destroy or "
+            "change them first.",
+            id.index1, id.generation, users);
     sendFlipbooks(id.index1 - 1, nullptr);
     flipbooks_.destroy(id);
 }
@@ -78,8 +77,8 @@ uint32_t FlameSystem::flipbookByte(FwFlipbookId id, const char* name, flipbook::
     static constexpr const char* kNames[] = {"fire", "smoke", "sparks"};
     const flipbook::Kind has = entry.book->facts.kind;
     if (has != kind)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is a flipbook of %s; it must be one of %s.", name,
-                   kNames[uint32_t(has)], kNames[uint32_t(kind)]);
+        core::refuse("%s is a flipbook of %s; it must be one of %s.", name, kNames[uint32_t(has)],
+                     kNames[uint32_t(kind)]);
     return id.index1;
 }
 

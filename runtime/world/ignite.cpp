@@ -146,9 +146,8 @@ uint32_t BurnSystem::eventTick(float delay) const {
 
 void BurnSystem::reservePending(size_t more) {
     if (state_.pending.size() + more > kMaxPending)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%zu texel events wait and %zu more come; the limit is %zu.",
-                   state_.pending.size(), more, kMaxPending);
+        core::refuse("%zu texel events wait and %zu more come; the limit is %zu.",
+                     state_.pending.size(), more, kMaxPending);
     core::growTo(state_.pending, state_.pending.size() + more);
 }
 
@@ -230,8 +229,7 @@ uint32_t BurnSystem::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
     checkValue(def.water, "FwIgnitionDef::water", 0.0f, def.kind == FW_WET ? 1023.0f : 0.0f);
     for (uint32_t i = 0; i < 2; ++i)
         if (def.reserved[i] != 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwIgnitionDef::reserved[%u] is %u; it is zero.",
-                       i, def.reserved[i]);
+            core::refuse("FwIgnitionDef::reserved[%u] is %u; it is zero.", i, def.reserved[i]);
     const size_t before = state_.pending.size();
     try {
         uint32_t texels = 0;
@@ -255,8 +253,7 @@ void BurnSystem::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const 
     const uint32_t count = domain.texelCount();
     for (size_t i = 0; i < texels.size(); ++i)
         if (texels[i] >= count)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "texels[%zu] is %u; the map has %u texels.", i,
-                       texels[i], count);
+            core::refuse("texels[%zu] is %u; the map has %u texels.", i, texels[i], count);
     // Heat steps never look at a texel that no triangle covers: an event would change it for good.
     scene_.found.clear();
     for (const uint32_t texel : texels)
@@ -266,8 +263,8 @@ void BurnSystem::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const 
 
 void BurnSystem::checkCommandTick(uint32_t tick) const {
     if (tick < context_.clock.tick || tick > Clock::kLastTick)
-        core::fail(FW_ERROR_BAD_DATA, "A command takes effect at tick %u; it is now %llu.", tick,
-                   static_cast<unsigned long long>(context_.clock.tick));
+        core::failData("A command takes effect at tick %u; it is now %llu.", tick,
+                       static_cast<unsigned long long>(context_.clock.tick));
 }
 
 // The texel events from `first` on, as commands.
@@ -298,8 +295,8 @@ void BurnSystem::apply(const IgniteTexels& command) {
     scene_.found.clear();
     command.texels.each([&](uint32_t texel) {
         if (texel >= domain.texelCount() || !domain.real(texel))
-            core::fail(FW_ERROR_BAD_DATA, "A command changes texel %u of burnable mesh %u.", texel,
-                       command.slot + 1);
+            core::failData("A command changes texel %u of burnable mesh %u.", texel,
+                           command.slot + 1);
         scene_.found.push_back(texel);
     });
     addChange(object, command.change, scene_.found);
@@ -323,9 +320,8 @@ void BurnSystem::addChange(Object& object, const TexelChange& change,
                            std::span<const uint32_t> texels) {
     checkCommandTick(change.tick);
     if (change.kind > FW_EXTINGUISH || change.water > gpu::kMaxFilm)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "A command is of kind %u with %u g/m^2 of water; the limits are %u and %u.",
-                   change.kind, change.water, uint32_t(FW_EXTINGUISH), gpu::kMaxFilm);
+        core::failData("A command is of kind %u with %u g/m^2 of water; the limits are %u and %u.",
+                       change.kind, change.water, uint32_t(FW_EXTINGUISH), gpu::kMaxFilm);
     if (!texels.empty()) addPending(object, change.kind, change.tick, change.water, texels);
 }
 

@@ -13,8 +13,8 @@ template <class T>
 void checkRule(T saved, T mine, const char* name) {
     constexpr int kDigits = std::is_integral_v<T> ? 10 : 6;
     if (!(saved == mine))
-        core::fail(FW_ERROR_BAD_DATA, "The save's FwWorldDef::%s is %.*g; this world's is %.*g.",
-                   name, kDigits, double(saved), kDigits, double(mine));
+        core::failData("The save's FwWorldDef::%s is %.*g; this world's is %.*g.", name, kDigits,
+                       double(saved), kDigits, double(mine));
 }
 
 // Refuses values out of range and references to what this world does not have. Ids become this
@@ -40,8 +40,8 @@ class SnapshotChecker : public save::Archive<SnapshotChecker> {
     }
     void object(const char* name, uint32_t slot) const {
         if (!scene_.objects.findSlot(slot))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has %s of burnable mesh %u, which is not there.", name, slot + 1);
+            core::failData("The save has %s of burnable mesh %u, which is not there.", name,
+                           slot + 1);
     }
     void object(const char* name, FwBurnableMeshId& id) const {
         if (id.index1 == 0) return;
@@ -52,9 +52,8 @@ class SnapshotChecker : public save::Archive<SnapshotChecker> {
         object(name, slot);
         const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(slot));
         if (texel >= domain.texelCount() || !domain.real(texel))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has %s at texel %u of burnable mesh %u, which is not there.", name,
-                       texel, slot + 1);
+            core::failData("The save has %s at texel %u of burnable mesh %u, which is not there.",
+                           name, texel, slot + 1);
     }
     void texel(const char* name, FwBurnableMeshId& id, uint32_t at) const {
         object(name, id);
@@ -64,14 +63,14 @@ class SnapshotChecker : public save::Archive<SnapshotChecker> {
     void range(const char* name, const T& value, double low, double high) const {
         if constexpr (std::is_arithmetic_v<T>) {
             if (!(double(value) >= low && double(value) <= high))
-                core::fail(FW_ERROR_BAD_DATA, "The save's %s is %.9g; the limits are [%.9g, %.9g].",
-                           name, double(value), low, high);
+                core::failData("The save's %s is %.9g; the limits are [%.9g, %.9g].", name,
+                               double(value), low, high);
         } else {
             for (const auto& one : value) range(name, one, low, high);
         }
     }
     void require(bool good, const char* name) const {
-        if (!good) core::fail(FW_ERROR_BAD_DATA, "The save's %s is out of its limits.", name);
+        if (!good) core::failData("The save's %s is out of its limits.", name);
     }
 
  private:
@@ -119,11 +118,11 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
     for (const ObjectSnapshot& object : saved.objects) {
         const uint64_t asset = assetOf(scene_.objectAt(object.slot));
         if (object.asset != asset)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "Burnable mesh %u is not the save's: mesh, materials and def hash to "
-                       "0x%016llX, the save's to 0x%016llX.",
-                       object.slot + 1, static_cast<unsigned long long>(asset),
-                       static_cast<unsigned long long>(object.asset));
+            core::failData(
+                "Burnable mesh %u is not the save's: mesh, materials and def hash to "
+                "0x%016llX, the save's to 0x%016llX.",
+                object.slot + 1, static_cast<unsigned long long>(asset),
+                static_cast<unsigned long long>(object.asset));
     }
     checkCount(saved.burn.pending.size(), BurnSystem::kMaxPending, "events that wait");
     for (const PendingTexel& event : saved.burn.pending) {
@@ -192,9 +191,8 @@ void PersistenceSystem::readObjects(const Snapshot& saved, RestoredObjects& out)
         if (from.findsBreaks && object.breaks) {
             store.lost.resize(domain.texelCount());
             if (!save::readPlane(from.lost, domain.width, {}, store.lost))
-                core::fail(FW_ERROR_BAD_DATA,
-                           "The save's plane of broken texels of burnable mesh %u is damaged.",
-                           from.slot + 1);
+                core::failData("The save's plane of broken texels of burnable mesh %u is damaged.",
+                               from.slot + 1);
         }
         gpu::RestoredObject& one = out.images.emplace_back();
         one.image = {from.slot,   store.ticks,    store.heat,

@@ -23,21 +23,18 @@ std::span<const T> optional(const T* data, size_t count) {
 Input makeInput(const FwMeshDef& def, std::pmr::memory_resource* memory) {
     components::checkFlags(def.flags, "FwMeshDef::flags", FW_MESH_TRUST_UVS);
     components::checkWhole(def.reserved, "FwMeshDef::reserved", 0, 0);
-    if (!def.positions) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::positions is null.");
-    if (!def.indices) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::indices is null.");
+    if (!def.positions) core::refuse("FwMeshDef::positions is null.");
+    if (!def.indices) core::refuse("FwMeshDef::indices is null.");
     components::checkWhole(def.vertexCount, "FwMeshDef::vertexCount", 3, kMostVertices);
     if (def.indexCount < 3 || def.indexCount > kMaxIndices || def.indexCount % 3 != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMeshDef::indexCount is %u; it is a multiple of 3 in [3, %u].", def.indexCount,
-                   kMaxIndices);
+        core::refuse("FwMeshDef::indexCount is %u; it is a multiple of 3 in [3, %u].",
+                     def.indexCount, kMaxIndices);
     if (def.indexSize != 2 && def.indexSize != 4)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::indexSize is %u; it is 2 or 4 bytes.",
-                   def.indexSize);
+        core::refuse("FwMeshDef::indexSize is %u; it is 2 or 4 bytes.", def.indexSize);
     components::checkWhole(def.mapSize, "FwMeshDef::mapSize", 8, 4096);
     if (!(def.texelsPerMetre > 0))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMeshDef::texelsPerMetre is %g; the limits are (0, 4096].",
-                   double(def.texelsPerMetre));
+        core::refuse("FwMeshDef::texelsPerMetre is %g; the limits are (0, 4096].",
+                     double(def.texelsPerMetre));
     components::checkValue(def.texelsPerMetre, "FwMeshDef::texelsPerMetre", 0, 4096);
     components::checkValue(def.noiseAmplitude, "FwMeshDef::noiseAmplitude", 0, 0.5f);
     components::checkValue(def.noiseFeature, "FwMeshDef::noiseFeature", 1e-4f, 1e3f);
@@ -79,9 +76,8 @@ core::Owned<mesh::BurnDomain> makeDomain(const FwMeshDef& def, std::pmr::memory_
     if (def.cooked) {
         constexpr uint64_t kMost = uint64_t(1) << 32;
         if (def.cookedSize == 0 || def.cookedSize > kMost)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwMeshDef::cookedSize is %llu; the limits are [1, 2^32] bytes.",
-                       static_cast<unsigned long long>(def.cookedSize));
+            core::refuse("FwMeshDef::cookedSize is %llu; the limits are [1, 2^32] bytes.",
+                         static_cast<unsigned long long>(def.cookedSize));
         *domain = mesh::readCooked(
             {static_cast<const std::byte*>(def.cooked), size_t(def.cookedSize)}, memory);
     } else {
@@ -96,9 +92,7 @@ uint64_t cookKey(const FwMeshDef& def, std::pmr::memory_resource* memory) {
 }
 
 std::pmr::vector<std::byte> cook(const FwMeshDef& def, std::pmr::memory_resource* memory) {
-    if (def.cooked)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMeshDef::cooked is given; only arrays can be cooked.");
+    if (def.cooked) core::refuse("FwMeshDef::cooked is given; only arrays can be cooked.");
     const Input input = makeInput(def, memory);
     const mesh::BurnDomain domain = mesh::bake(input.bake, memory);
     return mesh::writeCooked(domain, mesh::bakeKey(input.bake), memory);

@@ -23,10 +23,10 @@ void PersistenceSystem::checkFrame(float deltaTime) const {
     const uint64_t end =
         fw::world::advance(context_.clock, deltaTime, context_.def.maxStepsPerFrame).after.tick;
     if (end > std::max(recorder_.network->until, context_.clock.tick))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "deltaTime is %g; the world follows a server's, and fwNet_NextAction says how "
-                   "far a frame may go.",
-                   double(deltaTime));
+        core::refuse(
+            "deltaTime is %g; the world follows a server's, and fwNet_NextAction says how "
+            "far a frame may go.",
+            double(deltaTime));
 }
 
 void PersistenceSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) {

@@ -71,19 +71,18 @@ void readBurn(std::span<const std::byte> bytes, Burn& burn) {
     save::readHead(reader, kBurnMagic, kBurnVersion);
     reader.number(burn.hash);
     if (burn.hash != core::hashBytes(bytes.subspan(kBurnHead)))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The baked burn is damaged or cut: its checksum is not right.");
+        core::failData("The baked burn is damaged or cut: its checksum is not right.");
     reader.number(burn.mesh);
     reader.number(burn.width);
     reader.number(burn.height);
     for (const uint32_t side : {burn.width, burn.height})
         if (side == 0 || side > kMaxBurnSide || side % 8 != 0)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The baked burn is of %u x %u texels; sides are multiples of 8, at most %u.",
-                       burn.width, burn.height, kMaxBurnSide);
+            core::failData(
+                "The baked burn is of %u x %u texels; sides are multiples of 8, at most %u.",
+                burn.width, burn.height, kMaxBurnSide);
     burn.ticks.assign(size_t(burn.width) * burn.height, 0);
     if (!save::readPlane(reader.take(reader.left()), burn.width, {}, burn.ticks))
-        core::fail(FW_ERROR_BAD_DATA, "The baked burn's plane of ticks is none.");
+        core::failData("The baked burn's plane of ticks is none.");
     burn.order.clear();
     for (uint32_t i = 0; i < burn.ticks.size(); ++i) {
         const bool lit = burn.ticks[i] != 0;
@@ -107,8 +106,8 @@ void BurnSystem::destroyBurn(FwBurnId id) {
     (void)state_.burns.get(id);
     for (const Object* object : scene_.playing)
         if (object->play.burn1 == id.index1)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "Baked burn %u is played by burnable mesh %u.",
-                       id.index1, object->id.index1);
+            core::refuse("Baked burn %u is played by burnable mesh %u.", id.index1,
+                         object->id.index1);
     state_.burns.destroy(id);
 }
 
@@ -129,15 +128,14 @@ void BurnSystem::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick,
     const Burn& burn = *state_.burns.get(burnId);
     components::checkValue(speed, "speed", kSlowestPlay, kFastestPlay);
     if (object.data.flags & core::reserved::kBurning)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u burns by an extension; it plays no baked burn.", id.index1);
+        core::refuse("Burnable mesh %u burns by an extension; it plays no baked burn.", id.index1);
     const uint64_t mesh = scene_.meshHash(object);
     if (burn.mesh != mesh || burn.ticks.size() != scene_.domainOf(object).texelCount())
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Baked burn %u is of a mesh of hash %016llx; burnable mesh %u has one of "
-                   "%016llx.",
-                   burnId.index1, static_cast<unsigned long long>(burn.mesh), id.index1,
-                   static_cast<unsigned long long>(mesh));
+        core::refuse(
+            "Baked burn %u is of a mesh of hash %016llx; burnable mesh %u has one of "
+            "%016llx.",
+            burnId.index1, static_cast<unsigned long long>(burn.mesh), id.index1,
+            static_cast<unsigned long long>(mesh));
     Play play;
     play.burn1 = burnId.index1;
     // Its first texel catches in the step after the one that starts it in the backend.
@@ -257,15 +255,14 @@ void BurnSystem::settlePlays(const BurnSnapshot& saved, std::span<ObjectSnapshot
         const core::Owned<Burn>* burn = state_.burns.findSlot(play.burn1 - 1);
         if (!burn || (*burn)->hash != object.burnHash ||
             (*burn)->mesh != scene_.meshHash(scene_.objectAt(object.slot)))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "Burnable mesh %u of the save plays baked burn %u, which is none or another "
-                       "one here.",
-                       object.slot + 1, play.burn1);
+            core::failData(
+                "Burnable mesh %u of the save plays baked burn %u, which is none or another "
+                "one here.",
+                object.slot + 1, play.burn1);
         if (play.rate < playRate(kSlowestPlay) || play.rate > playRate(kFastestPlay) ||
             play.first > Clock::kLastTick || play.began > clock.tick)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "Burnable mesh %u of the save plays a baked burn as none can be.",
-                       object.slot + 1);
+            core::failData("Burnable mesh %u of the save plays a baked burn as none can be.",
+                           object.slot + 1);
         play.most = maxAtOnce(**burn, play, context_.def.maxStepsPerFrame);
         events += play.most + 2;
         ++count;

@@ -60,7 +60,7 @@ uint32_t QuerySystem::texelAt(FwBurnableMeshId id, const Object& object,
     components::toObject(object.data.pose, position, point);
     const uint32_t texel = scene_.nearestTexel(object, point, 1e18f);
     if (texel == mesh::kNone)
-        core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
+        core::failData("The mesh of burnable mesh %u has no texel.", id.index1);
     return texel;
 }
 
@@ -68,8 +68,7 @@ void QuerySystem::tagPoint(FwBurnableMeshId id, const float position[3], uint32_
     components::checkLengths(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *scene_.objects.get(id);
     if (tags_.size() >= kMaxTags)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu tagged points wait; the limit is %u.",
-                   tags_.size(), kMaxTags);
+        core::refuse("%zu tagged points wait; the limit is %u.", tags_.size(), kMaxTags);
     tags_.push_back({id, texelAt(id, object, position), tag});
 }
 
@@ -219,9 +218,9 @@ Query& QuerySystem::openQuery(FwQueryId id, bool isArrival) {
     Query& query = queries_.get(id);
     FW_ASSERT(scene_.objects.find(query.object), "query %u", id.index1);
     if (query.isArrival != isArrival)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "Query %u asks for %s.", id.index1,
-                   query.isArrival ? "an arrival; fwWorld_FetchArrival answers it"
-                                   : "a point's state; fwWorld_FetchPoint answers it");
+        core::refuse("Query %u asks for %s.", id.index1,
+                     query.isArrival ? "an arrival; fwWorld_FetchArrival answers it"
+                                     : "a point's state; fwWorld_FetchPoint answers it");
     return query;
 }
 
@@ -255,9 +254,8 @@ void QuerySystem::cancelBurnMap(FwBurnableMeshId id) {
 const BurnMapCopy* QuerySystem::fetchBurnMap(FwBurnableMeshId id) {
     const BurnMapCopy& map = (*scene_.objects.get(id)).map;
     if (!map.ready && !map.requested && !map.pending)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The burn map of burnable mesh %u was not asked for; request it first.",
-                   id.index1);
+        core::refuse("The burn map of burnable mesh %u was not asked for; request it first.",
+                     id.index1);
     return map.ready ? &map : nullptr;
 }
 
@@ -267,7 +265,7 @@ const std::pmr::vector<std::byte>* QuerySystem::fetchBurn(FwBurnableMeshId id) {
     Object& object = *scene_.objects.get(id);
     const mesh::BurnDomain& domain = scene_.domainOf(object);
     if (std::none_of(map->ticks.begin(), map->ticks.end(), gpu::isSource))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "Nothing of burnable mesh %u has burnt.", id.index1);
+        core::refuse("Nothing of burnable mesh %u has burnt.", id.index1);
     writeBurn(map->ticks, scene_.meshHash(object), domain.width, domain.height, burnBytes_);
     return &burnBytes_;
 }

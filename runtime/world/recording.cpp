@@ -24,8 +24,8 @@ void writeCommand(const Command& command, std::pmr::vector<std::byte>& out) {
 
 void readCommand(uint32_t kind, save::Reader& reader, Command& command) {
     if (kind >= kCommandKinds)
-        core::fail(FW_ERROR_BAD_DATA, "The %s has a command of kind %u; the limit is %u.",
-                   reader.name(), kind, kCommandKinds - 1);
+        core::failData("The %s has a command of kind %u; the limit is %u.", reader.name(), kind,
+                       kCommandKinds - 1);
     makeKind(command, kind, std::make_index_sequence<kCommandKinds>());
     std::visit([&](auto& one) { reader(one); }, command);
 }
@@ -34,7 +34,7 @@ void readCommand(uint32_t kind, std::span<const std::byte> bytes, Command& comma
     save::Reader reader(bytes, "packet", std::pmr::null_memory_resource());
     readCommand(kind, reader, command);
     if (reader.left() != 0)
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a command of the packet.", reader.left());
+        core::failData("%zu bytes follow a command of the packet.", reader.left());
 }
 
 uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> heat) noexcept {
@@ -48,8 +48,7 @@ uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> 
 
 void Recorder::mayChange() const {
     if (network && network->follows && !network->applies)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The world follows a server's: what burns in it is changed there.");
+        core::refuse("The world follows a server's: what burns in it is changed there.");
 }
 
 void Recorder::record(const Command& command) noexcept {

@@ -72,8 +72,8 @@ uint32_t PersistenceSystem::explainUnsavable() noexcept {
 
 void PersistenceSystem::requestSave(SaveFor who) {
     if (const uint32_t object1 = explainUnsavable())
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u burns by an extension; such fires cannot be saved.", object1);
+        core::refuse("Burnable mesh %u burns by an extension; such fires cannot be saved.",
+                     object1);
     core::Owned<Save>& save = saves_[size_t(who)];
     if (!save) save = core::Owned<Save>::make(context_.memory, context_.memory);
     save->requested = true;
@@ -85,7 +85,7 @@ void PersistenceSystem::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = 
 const std::pmr::vector<std::byte>* PersistenceSystem::fetchSave(SaveFor who) {
     const core::Owned<Save>& save = saves_[size_t(who)];
     if (!save || (!save->requested && !save->pending && !save->ready))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "No save was asked for; request it first.");
+        core::refuse("No save was asked for; request it first.");
     if (save->failed) {
         save->failed = false;
         throw std::bad_alloc();

@@ -76,8 +76,8 @@ void visitImage(A& a, Image& image, const mesh::BurnDomain& domain, uint32_t tic
     bool heated = expected;
     a(heated);
     if (heated != expected)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %s heat for an object that has %s.",
-                   heated ? "some" : "no", heated ? "none" : "some");
+        core::failData("The save has %s heat for an object that has %s.", heated ? "some" : "no",
+                       heated ? "none" : "some");
     for (const HeatField& field : kHeatFields) {
         if (!heated) break;
         const uint32_t mask = (1u << field.bits) - 1;
@@ -148,8 +148,7 @@ void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain
     save::Reader reader(planes, kSaveName, memory);
     visitImage(reader, store, domain, tick, window, memory);
     if (reader.left() != 0)
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow an object's planes in the save.",
-                   reader.left());
+        core::failData("%zu bytes follow an object's planes in the save.", reader.left());
 }
 
 void writeSnapshot(const Snapshot& snapshot, std::pmr::vector<std::byte>& out) {
@@ -165,24 +164,24 @@ void writeSnapshot(const Snapshot& snapshot, std::pmr::vector<std::byte>& out) {
 
 void readSnapshot(std::span<const std::byte> bytes, Snapshot& snapshot) {
     if (bytes.size() < kHeaderBytes)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes; its header alone has %zu.",
-                   bytes.size(), kHeaderBytes);
+        core::failData("The save has %zu bytes; its header alone has %zu.", bytes.size(),
+                       kHeaderBytes);
     save::Reader reader(bytes, kSaveName, snapshot.memory);
     uint64_t size = 0, sum = 0;
     save::readHead(reader, kMagic, kSaveVersion);
     reader(size, sum);
     const auto content = bytes.subspan(kHeaderBytes);
     if (size != content.size())
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes of content; its header says %llu.",
-                   content.size(), static_cast<unsigned long long>(size));
+        core::failData("The save has %zu bytes of content; its header says %llu.", content.size(),
+                       static_cast<unsigned long long>(size));
     const uint64_t found = checksum(content);
     if (found != sum)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The save's checksum is 0x%016llX; its header says 0x%016llX.",
-                   static_cast<unsigned long long>(found), static_cast<unsigned long long>(sum));
+        core::failData("The save's checksum is 0x%016llX; its header says 0x%016llX.",
+                       static_cast<unsigned long long>(found),
+                       static_cast<unsigned long long>(sum));
     reader(snapshot);
     if (reader.left() != 0)
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the content of the save.", reader.left());
+        core::failData("%zu bytes follow the content of the save.", reader.left());
 }
 
 }  // namespace fw::world

@@ -182,8 +182,8 @@ void PersistenceSystem::mergeBlocks(std::span<const std::byte> save,
     ImageStore store(context_.memory), taken(context_.memory);
     if (part.objects.size() != 1 || !readObject(save, part.objects[0].slot, saved, store) ||
         part.clock.tick != saved.clock.tick || !part.objects[0].touched)
-        core::fail(FW_ERROR_BAD_DATA, "The tiles are of tick %llu and another state.",
-                   static_cast<unsigned long long>(part.clock.tick));
+        core::failData("The tiles are of tick %llu and another state.",
+                       static_cast<unsigned long long>(part.clock.tick));
     const ObjectSnapshot& from = part.objects[0];
     const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(from.slot));
     const BlockGrid grid = gridOf(domain);
@@ -193,8 +193,7 @@ void PersistenceSystem::mergeBlocks(std::span<const std::byte> save,
     for (uint32_t i = 0; i < count; ++i) {
         reader.number(blocks.emplace_back());
         if (blocks[i] >= grid.count() || (i > 0 && blocks[i] <= blocks[i - 1]))
-            core::fail(FW_ERROR_BAD_DATA, "The tiles are of block %u; there are %u.", blocks[i],
-                       grid.count());
+            core::failData("The tiles are of block %u; there are %u.", blocks[i], grid.count());
     }
     ObjectSnapshot& object = *findObject(saved, from.slot);
     object = from;

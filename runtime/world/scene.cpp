@@ -81,7 +81,7 @@ FwImageId Scene::createImage(const FwImageDef& def) {
     components::checkFlags(def.flags, "FwImageDef::flags", 0);
     components::checkWhole(def.width, "FwImageDef::width", 1, 8192);
     components::checkWhole(def.height, "FwImageDef::height", 1, 8192);
-    if (!def.pixels) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwImageDef::pixels is null.");
+    if (!def.pixels) core::refuse("FwImageDef::pixels is null.");
     checkValue(def.alphaCutoff, "FwImageDef::alphaCutoff", 0.0f, 1.0f);
     checkValue(def.reserved, "FwImageDef::reserved", 0.0f, 0.0f);
     uint32_t slot = 0;
@@ -183,9 +183,8 @@ void Scene::releaseShape(uint32_t slot) noexcept {
 void Scene::destroyMesh(FwMeshId id) {
     MeshEntry& entry = meshes.get(id);
     if (entry.users > 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Mesh %u (generation %u) is used by %u burnable mesh(es); destroy them first.",
-                   id.index1, id.generation, entry.users);
+        core::refuse("Mesh %u (generation %u) is used by %u burnable mesh(es); destroy them first.",
+                     id.index1, id.generation, entry.users);
     context_.backend.destroyMesh(id.index1 - 1);
     meshes.destroy(id);
 }
@@ -299,12 +298,10 @@ gpu::HeatBoundary Scene::boundaryOf(const FwBurnableMeshDef& def,
 uint32_t Scene::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
     const Object& object = *objects.get(id);
     if (!(object.data.flags & FW_BURNABLE_SKINNED))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u was created without FW_BURNABLE_SKINNED.", id.index1);
+        core::refuse("Burnable mesh %u was created without FW_BURNABLE_SKINNED.", id.index1);
     const uint32_t vertices = domainOf(object).report.vertices;
     if (vertexCount != vertices)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "vertexCount is %u; the mesh has %u vertices.",
-                   vertexCount, vertices);
+        core::refuse("vertexCount is %u; the mesh has %u vertices.", vertexCount, vertices);
     return object.slot;
 }
 

@@ -57,9 +57,8 @@ void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def) {
     if (def.structSize != 0) {
         made.shape = components::makeOcclusionGridShape(def);
         if (def.objectCount != 0 && !def.objects)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwHeatOcclusionDef::objects is null, and objectCount is %u.",
-                       def.objectCount);
+            core::refuse("FwHeatOcclusionDef::objects is null, and objectCount is %u.",
+                         def.objectCount);
         for (uint32_t i = 0; i < def.objectCount; ++i)
             slots.push_back((*scene_.objects.get(def.objects[i])).slot);
         if (def.flags & FW_HEAT_OCCLUSION_ALL_OBJECTS) {
@@ -114,8 +113,8 @@ void ExchangeSystem::apply(const SetShieldCells& command) {
     context_.recorder.mayChange();
     components::HeatOcclusion& grid = shield_.grid;
     if (command.first >= grid.solid.size())
-        core::fail(FW_ERROR_BAD_DATA, "A command is of word %u of the shield, which has %zu.",
-                   command.first, grid.solid.size());
+        core::failData("A command is of word %u of the shield, which has %zu.", command.first,
+                       grid.solid.size());
     std::copy_n(command.values.begin(),
                 std::min<size_t>(command.kCount, grid.solid.size() - command.first),
                 grid.solid.begin() + std::ptrdiff_t(command.first));
@@ -129,12 +128,10 @@ void ExchangeSystem::apply(const AddShieldObject& command) {
     context_.recorder.mayChange();
     if (command.object1 != 0) {
         if (!scene_.objects.findSlot(command.object1 - 1))
-            core::fail(FW_ERROR_BAD_DATA, "A command shields by object %u, which is not there.",
-                       command.object1);
+            core::failData("A command shields by object %u, which is not there.", command.object1);
         if (shield_.commandSlots.size() >= scene_.objects.live())
-            core::fail(FW_ERROR_BAD_DATA,
-                       "Commands name more objects for one shield than the %u that there are.",
-                       scene_.objects.live());
+            core::failData("Commands name more objects for one shield than the %u that there are.",
+                           scene_.objects.live());
         shield_.commandSlots.push_back(command.object1 - 1);
     }
     if (command.last) {

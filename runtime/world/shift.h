@@ -47,12 +47,11 @@ template <class Place>
 void checkMoved(const Place& place, const double (&by)[3], const char* what, uint32_t slot) {
     for (int i = 0; i < 3; ++i)
         if (const double moved = double(place[i]) + by[i]; !(std::abs(moved) <= kFar))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
-                       " and would put %s %u at " FW_LENGTH " " FW_LENGTH_UNIT
-                       "; places lie within +-" FW_LENGTH " " FW_LENGTH_UNIT
-                       ". Move or destroy it first.",
-                       i, by[i], what, slot + 1, moved, kFar);
+            core::refuse("offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
+                         " and would put %s %u at " FW_LENGTH " " FW_LENGTH_UNIT
+                         "; places lie within +-" FW_LENGTH " " FW_LENGTH_UNIT
+                         ". Move or destroy it first.",
+                         i, by[i], what, slot + 1, moved, kFar);
 }
 template <class Whole>
 void checkMillimetres(const std::array<Whole, 3>& place, const double (&by)[3], const char* what,

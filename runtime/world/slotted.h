@@ -40,29 +40,26 @@ void captureSlots(const Pool& pool, SlottedList<T>& to) {
 template <class List, class Pool>
 void checkSlots(const List& saved, const Pool& pool, const char* name, const char* names) {
     if (saved.size() != pool.live())
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu %s; this world has %u.", saved.size(),
-                   names, pool.live());
+        core::failData("The save has %zu %s; this world has %u.", saved.size(), names, pool.live());
     uint32_t next = 0;
     for (const auto& one : saved) {
         if (one.slot < next || !pool.findSlot(one.slot))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has %s %u, which this world does not. Create the same things in "
-                       "the same order.",
-                       name, one.slot + 1);
+            core::failData(
+                "The save has %s %u, which this world does not. Create the same things in "
+                "the same order.",
+                name, one.slot + 1);
         next = one.slot + 1;
     }
 }
 // Throws where the world has one with another def.
 inline void checkSame(bool same, const char* name, uint32_t slot) {
     if (!same)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The save's %s %u has another def here, or a time after the save's.", name,
-                   slot + 1);
+        core::failData("The save's %s %u has another def here, or a time after the save's.", name,
+                       slot + 1);
 }
 inline void checkCount(size_t count, size_t limit, const char* names) {
     if (count > limit)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu %s; the limit is %zu.", count, names,
-                   limit);
+        core::failData("The save has %zu %s; the limit is %zu.", count, names, limit);
 }
 
 }  // namespace fw::world

@@ -95,9 +95,8 @@ void QuerySystem::makeSafetyMask(const float corner[3], const float columnStep[3
     components::checkLengths(columnStep, 3, "columnStep", -1e4f, 1e4f);
     components::checkLengths(rowStep, 3, "rowStep", -1e4f, 1e4f);
     if (columns < 1 || columns > kMaxMaskSide || rows < 1 || rows > kMaxMaskSide)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The mask has %u columns and %u rows; the limits are [1, %u] each.", columns,
-                   rows, kMaxMaskSide);
+        core::refuse("The mask has %u columns and %u rows; the limits are [1, %u] each.", columns,
+                     rows, kMaxMaskSide);
     const components::SurroundingAir air = listSources();
     for (uint32_t row = 0; row < rows; ++row)
         for (uint32_t column = 0; column < columns; ++column) {

@@ -79,15 +79,14 @@ void PersistenceSystem::startTimeline(const FwTimelineDef& def) {
     components::checkValue(def.interval, "FwTimelineDef::interval", kShortest, kLongest);
     components::checkValue(def.maxInterval, "FwTimelineDef::maxInterval", kShortest, kLongest);
     if (def.reserved != 0 || def.maxInterval < def.interval)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwTimelineDef::maxInterval is %g s, below its interval of %g s, or reserved is %u, "
             "not zero.",
             double(def.maxInterval), double(def.interval), def.reserved);
     if (def.bytes < kMinTimeline)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwTimelineDef::bytes is %llu; at least %llu.",
-                   static_cast<unsigned long long>(def.bytes),
-                   static_cast<unsigned long long>(kMinTimeline));
+        core::refuse("FwTimelineDef::bytes is %llu; at least %llu.",
+                     static_cast<unsigned long long>(def.bytes),
+                     static_cast<unsigned long long>(kMinTimeline));
     auto timeline = core::Owned<Timeline>::make(context_.memory, context_.memory);
     timeline->apart = ticksOf(def.interval);
     timeline->farthest = std::max(ticksOf(def.maxInterval), timeline->apart);
@@ -143,12 +142,11 @@ void PersistenceSystem::keepKeyframe() noexcept {
 bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
     seconds = 0;
     if (!recorder_.timeline)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The world keeps no timeline; fwWorld_StartTimeline first.");
+        core::refuse("The world keeps no timeline; fwWorld_StartTimeline first.");
     recorder_.mayChange();
     if (const uint32_t object1 = explainUnsavable())
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u burns by an extension; such fires cannot be sought.", object1);
+        core::refuse("Burnable mesh %u burns by an extension; such fires cannot be sought.",
+                     object1);
     Timeline& timeline = *recorder_.timeline;
     if (timeline.commands.lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
@@ -157,11 +155,12 @@ bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
     if (timeline.keyframes.empty() && until <= timeline.end) return until == context_.clock.tick;
     if (timeline.keyframes.empty() || until < timeline.keyframes.front().tick ||
         until > timeline.end)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "untilTick is %llu; the timeline has %llu to %llu.",
-                   static_cast<unsigned long long>(untilTick),
-                   static_cast<unsigned long long>(
-                       timeline.keyframes.empty() ? timeline.end : timeline.keyframes.front().tick),
-                   static_cast<unsigned long long>(timeline.end));
+        core::refuse("untilTick is %llu; the timeline has %llu to %llu.",
+                     static_cast<unsigned long long>(untilTick),
+                     static_cast<unsigned long long>(timeline.keyframes.empty()
+                                                         ? timeline.end
+                                                         : timeline.keyframes.front().tick),
+                     static_cast<unsigned long long>(timeline.end));
     const Raised seeking(&timeline.seeks);
     auto from = std::upper_bound(timeline.keyframes.begin(), timeline.keyframes.end(), until,
                                  [](uint64_t tick, const Keyframe& m) { return tick < m.tick; });

@@ -179,7 +179,7 @@ void WindSystem::apply(const SetGusts& command) {
     gusts.strength = command.strength;
     gusts.size = command.size;
     if (!components::plausible(gusts, context_.clock.tick))
-        core::fail(FW_ERROR_BAD_DATA, "A command's gusts are out of their limits.");
+        core::failData("A command's gusts are out of their limits.");
     if (!(gusts == state_.gusts)) ++state_.changes;
     state_.gusts = gusts;
     updateObjects();
@@ -217,8 +217,8 @@ void WindSystem::apply(const SetWindPoints& command) {
     context_.recorder.mayChange();
     const size_t points = state_.grid.points.size();
     if (command.first >= points)
-        core::fail(FW_ERROR_BAD_DATA, "A command is of point %u of the wind grid, which has %zu.",
-                   command.first, points);
+        core::failData("A command is of point %u of the wind grid, which has %zu.", command.first,
+                       points);
     std::copy_n(command.values.begin(), std::min<size_t>(command.kCount, points - command.first),
                 state_.grid.points.begin() + std::ptrdiff_t(command.first));
     ++state_.changes;

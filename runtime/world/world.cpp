@@ -31,9 +31,8 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     const float length =
         std::sqrt(def.up[0] * def.up[0] + def.up[1] * def.up[1] + def.up[2] * def.up[2]);
     if (std::fabs(length - 1.0f) > 1e-3f)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwWorldDef::up has length %g; it is a unit vector within 0.001.",
-                   double(length));
+        core::refuse("FwWorldDef::up has length %g; it is a unit vector within 0.001.",
+                     double(length));
     for (float& value : def.up) value /= length;
     checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
     checkLengths(def.wind, 3, "FwWorldDef::wind", -fire::kMaxWind, fire::kMaxWind);
@@ -290,15 +289,14 @@ void World::setVertexPositions(FwBurnableMeshId id, const float* positions, cons
 void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
     components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
     if (frameIndex <= context_.lastFrame)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "frameIndex is %llu and the last frame was %llu; it grows.",
-                   static_cast<unsigned long long>(frameIndex),
-                   static_cast<unsigned long long>(context_.lastFrame));
+        core::refuse("frameIndex is %llu and the last frame was %llu; it grows.",
+                     static_cast<unsigned long long>(frameIndex),
+                     static_cast<unsigned long long>(context_.lastFrame));
     if (deltaTime > 0 && context_.clock.tick >= Clock::kLastTick)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The world has simulated %llu s, which is the limit; create a new one. With "
-                   "deltaTime 0 it can still be drawn and asked.",
-                   static_cast<unsigned long long>(Clock::kLastTick / 4096));
+        core::refuse(
+            "The world has simulated %llu s, which is the limit; create a new one. With "
+            "deltaTime 0 it can still be drawn and asked.",
+            static_cast<unsigned long long>(Clock::kLastTick / 4096));
     persistence_.checkFrame(deltaTime);
 }
 
@@ -461,8 +459,7 @@ void World::setSwitches(uint32_t switches) {
                                 FW_DEBUG_SELF_INTERSECTION | core::reserved::kSwitchNoDepth;
     core::reserved::checkSwitches(switches);
     if (switches & ~kKnown)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "switches is 0x%x; the known switches are 0x%x.",
-                   switches, kKnown);
+        core::refuse("switches is 0x%x; the known switches are 0x%x.", switches, kKnown);
     context_.switches = switches;
 }
 
@@ -475,11 +472,10 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     for (int i = 0; i < 3; ++i) {
         by[i] = std::round(double(offset[i]));
         if (!(std::abs(context_.origin.moved[i] + by[i]) <= kFarthestOrigin))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
-                       " and all places have moved by " FW_LENGTH " " FW_LENGTH_UNIT
-                       " already; the limit is +-" FW_LENGTH " " FW_LENGTH_UNIT " in all.",
-                       i, by[i], context_.origin.moved[i], kFarthestOrigin);
+            core::refuse("offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
+                         " and all places have moved by " FW_LENGTH " " FW_LENGTH_UNIT
+                         " already; the limit is +-" FW_LENGTH " " FW_LENGTH_UNIT " in all.",
+                         i, by[i], context_.origin.moved[i], kFarthestOrigin);
     }
     float whole[3];
     for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
