@@ -31,14 +31,7 @@ struct Deferred {  // to be destroyed once the frame is complete
 }  // namespace fw::edge
 
 struct FwContext {
-    explicit FwContext(const FwCallbacks& given)
-        : callbacks(given),
-          memory(given),
-          log(given),
-          worlds(&memory),
-          deferredWorlds(&memory),
-          deferredTargets(&memory),
-          cooked(&memory) {}
+    explicit FwContext(const FwCallbacks& given) : callbacks(given), memory(given), log(given) {}
 
     FwCallbacks callbacks;
     fw::core::Memory memory;
@@ -48,28 +41,21 @@ struct FwContext {
     fw::edge::Device* device = nullptr;
 
     std::mutex mutex;  // of what is below
-    std::pmr::vector<FwWorld*> worlds;
-    std::pmr::vector<fw::edge::Deferred<FwWorld*>> deferredWorlds;  // of `worlds`
-    std::pmr::vector<fw::edge::Deferred<FwTargetId>> deferredTargets;
+    std::pmr::vector<FwWorld*> worlds{&memory};
+    std::pmr::vector<fw::edge::Deferred<FwWorld*>> deferredWorlds{&memory};  // of `worlds`
+    std::pmr::vector<fw::edge::Deferred<FwTargetId>> deferredTargets{&memory};
     // The last cooked mesh, between the call that asks for its size and the one that takes it.
-    std::pmr::vector<std::byte> cooked;
+    std::pmr::vector<std::byte> cooked{&memory};
     uint64_t cookedKey = 0;
 };
 
 struct FwWorld {
-    FwWorld(FwContext* owner, const fw::edge::Unit& given)
-        : context(owner),
-          unit(given),
-          meshUnits(&owner->memory),
-          objectUnits(&owner->memory),
-          snapshot(&owner->memory),
-          doomed(&owner->memory),
-          dooming(&owner->memory) {}
+    FwWorld(FwContext* owner, const fw::edge::Unit& given) : context(owner), unit(given) {}
 
     FwContext* context;
     const fw::edge::Unit unit;  // of the host's lengths
     // Of object space, by slot of the mesh and of the burnable mesh.
-    std::pmr::vector<fw::edge::Unit> meshUnits, objectUnits;
+    std::pmr::vector<fw::edge::Unit> meshUnits{&context->memory}, objectUnits{&context->memory};
     fw::edge::LastMessage message;
     fw::gpu::Backend* backend = nullptr;
     std::optional<fw::world::World> world;
@@ -79,11 +65,12 @@ struct FwWorld {
 
     // State that other threads use while one thread steps or records the world.
     std::atomic<uint64_t> newestFrame{0};  // that it has begun to step or record
-    fw::edge::Snapshot snapshot;
+    fw::edge::Snapshot snapshot{&context->memory};
     std::mutex doomedMutex;
-    std::pmr::vector<FwObjectRef> doomed;  // fwWorld_DestroyLater, since the last step
+    std::pmr::vector<FwObjectRef> doomed{
+        &context->memory};  // fwWorld_DestroyLater, since the last step
     // Of the thread that steps: what earlier calls named and something still uses, in their order.
-    std::pmr::vector<FwObjectRef> dooming;
+    std::pmr::vector<FwObjectRef> dooming{&context->memory};
 };
 
 namespace fw::edge {

@@ -23,17 +23,7 @@ constexpr double kCatchUp = 8, kFastest = 1.25, kSlowest = 0.9;  // of real time
 }  // namespace
 
 Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resource* memory)
-    : def_(def),
-      memory_(memory),
-      recording_(world.persistence().startRecording(true)),
-      state_(memory),
-      own_(memory),
-      ownBlocks_(memory),
-      waiting_(memory),
-      marks_(memory),
-      theirHashes_(memory),
-      ourHashes_(memory),
-      packet_(memory) {
+    : def_(def), memory_(memory), recording_(world.persistence().startRecording(true)) {
     packet_.reserve(kMaxPacket);
     marks_.reserve(kMarks);
     FW_ASSERT(def.packetBytes >= kMinPacket && def.packetBytes <= kMaxPacket, "%u bytes",

@@ -71,35 +71,35 @@ class Client {
     uint32_t loads_ = 0;     // states and tiles so far
     uint32_t loaded_ = 0;    // id of the last of them
     uint32_t loadedAt_ = 0;  // its record
-    ChunkReceiver state_;
+    ChunkReceiver state_{memory_};
     // For tiles: the object, and this world's own save of where the server saved its.
     uint32_t wrongSlot_ = 0;
     uint32_t ownNumber_ = 0;  // of the server's capture; 0: there is none yet
     uint32_t ownRecord_ = 0;  // the first behind it
-    std::pmr::vector<std::byte> own_;
-    std::pmr::vector<uint32_t> ownBlocks_;
+    std::pmr::vector<std::byte> own_{memory_};
+    std::pmr::vector<uint32_t> ownBlocks_{memory_};
     bool tilesDue_ = false;
     double asking_ = 0, repaired_ = 1e9;  // s since then
     uint32_t repairs_ = 0;
-    double stuck_ = 0;                          // s since a piece of it came
-    double retryIn_ = 0;                        // s until a state is asked for again
-    uint32_t next_ = 0;                         // record to be applied next
-    uint32_t received_ = 0;                     // the records before it are applied or wait
-    uint32_t messagesEnd_ = 0;                  // behind the last message that was handed on
-    std::pmr::map<uint32_t, Waiting> waiting_;  // by record
+    double stuck_ = 0;          // s since a piece of it came
+    double retryIn_ = 0;        // s until a state is asked for again
+    uint32_t next_ = 0;         // record to be applied next
+    uint32_t received_ = 0;     // the records before it are applied or wait
+    uint32_t messagesEnd_ = 0;  // behind the last message that was handed on
+    std::pmr::map<uint32_t, Waiting> waiting_{memory_};  // by record
     uint32_t contradictions_ = 0;  // newest packets, in a row, against what others said
     bool overloaded_ = false;      // the server says that its rate cannot carry the changes
-    std::pmr::vector<Reached> marks_;
+    std::pmr::vector<Reached> marks_{memory_};
     uint32_t reached_ = 0;  // steps below it have all their records here
     uint32_t heard_ = 0;    // the last step that the server reported
     double owed_ = 0;       // s that the world is to be moved on
     double untilDue_ = 0;   // s
     bool due_ = true;
-    std::pmr::vector<world::ObjectHash> theirHashes_, ourHashes_;
+    std::pmr::vector<world::ObjectHash> theirHashes_{memory_}, ourHashes_{memory_};
     uint64_t compared_ = 0;
     uint32_t desyncs_ = 0;
-    std::pmr::vector<std::byte> packet_;  // scratch
-    Record record_;                       // scratch
+    std::pmr::vector<std::byte> packet_{memory_};  // scratch
+    Record record_;                                // scratch
 };
 
 }  // namespace fw::net

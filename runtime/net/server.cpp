@@ -44,13 +44,7 @@ void checkNetDef(const FwNetDef& def) {
 }
 
 Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resource* memory)
-    : def_(def),
-      memory_(memory),
-      peers_("Peer", memory),
-      recording_(world.persistence().startRecording(false)),
-      log_(memory),
-      captures_(memory),
-      packet_(memory) {
+    : def_(def), memory_(memory), recording_(world.persistence().startRecording(false)) {
     packet_.reserve(kMaxPacket);
     captures_.reserve(kMaxCaptures + 1);
     step_ = uint32_t(world.tick() / gpu::kStepTicks);
@@ -128,10 +122,14 @@ void Server::discardAll() noexcept {
     dropLog(log_.end());
 }
 
+void Server::append(const Record& record) {
+    log_.push(record, now_);
+    pushed_ += log_.at(log_.end() - 1).size();
+}
+
 void Server::push(const Record& record) {
     try {
-        log_.push(record, now_);
-        pushed_ += log_.at(log_.end() - 1).size();
+        append(record);
     } catch (...) {
         discardAll();
     }
@@ -206,8 +204,7 @@ void Server::sendMessage(world::World& world, std::span<const std::byte> message
     record_.kind = RecordKind::message;
     record_.step = step_;
     record_.message = message;
-    log_.push(record_, now_);
-    pushed_ += log_.at(log_.end() - 1).size();
+    append(record_);
     stepEnd_ = log_.end();
 }
 
@@ -278,9 +275,26 @@ Server::Capture* Server::captureOf(uint32_t number) noexcept {
     return nullptr;
 }
 
+void Server::failCapture(const world::World& world, const char* why) noexcept {
+    endCapture();
+    captureFailedAt_ = now_;
+    world.log().write(FW_LOG_WARNING, "Peers wait for the state, which cannot be saved: %s", why);
+}
+
+template <class Part>
+void Server::tryCapture(const world::World& world, const Part& part) noexcept {
+    try {
+        part();
+    } catch (const core::Error& error) {
+        failCapture(world, error.message);
+    } catch (const std::bad_alloc&) {
+        failCapture(world, "Memory does not suffice.");
+    }
+}
+
 void Server::fetchCapture(world::World& world) {
     if (!capturing_ || !captureRequested_) return;
-    try {
+    tryCapture(world, [&] {
         const std::pmr::vector<std::byte>* bytes =
             world.persistence().fetchSave(world::SaveFor::net);
         if (!bytes) return;
@@ -292,17 +306,7 @@ void Server::fetchCapture(world::World& world) {
         captures_.back().head.size = uint32_t(bytes->size());
         stateBytes_ = bytes->size();
         capturing_ = captureRequested_ = false;
-    } catch (const core::Error& error) {
-        failCapture(world, error.message);
-    } catch (const std::bad_alloc&) {
-        failCapture(world, "Memory does not suffice.");
-    }
-}
-
-void Server::failCapture(const world::World& world, const char* why) noexcept {
-    endCapture();
-    captureFailedAt_ = now_;
-    world.log().write(FW_LOG_WARNING, "Peers wait for the state, which cannot be saved: %s", why);
+    });
 }
 
 // Keeps those that a peer takes, and the newest as long as it may be given away.
@@ -349,14 +353,10 @@ void Server::collectCaptures(world::World& world) {
         needed |= peer.captures >= 1;
     });
     if (!needed || capturing_ || now_ - captureFailedAt_ < kCaptureRetry) return;
-    try {
+    tryCapture(world, [&] {
         world.persistence().requestSave(world::SaveFor::net);
         capturing_ = true;
-    } catch (const core::Error& error) {
-        failCapture(world, error.message);
-    } catch (const std::bad_alloc&) {
-        failCapture(world, "Memory does not suffice.");
-    }
+    });
     eachPeer([&](Peer& peer, uint32_t) {
         if (ruleOf(peer.phase).waits && peer.capture == 0)
             peer.captures = std::max(peer.captures - 1, 0.0);
@@ -729,8 +729,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
         state.roundTrip = float(peer.trip.seconds());
         return;
     }
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-        if (const Peer* peer = peers_.at(i)) add(*peer);
+    eachPeer([&](const Peer& peer, uint32_t) { add(peer); });
     state.phase = FW_NET_FOLLOWING;
     state.newestKnownStep = state.step;
 }

@@ -84,6 +84,7 @@ class Server {
             if (Peer* peer = peers_.at(i)) visit(*peer, i + 1);
     }
     void drain(world::World& world);
+    void append(const Record& record);  // may throw
     void push(const Record& record);
     [[nodiscard]] uint32_t neededFrom(bool messagesAlone) noexcept;
     void dropLog(uint32_t record) noexcept;
@@ -96,6 +97,8 @@ class Server {
     [[nodiscard]] Capture* captureOf(uint32_t number) noexcept;
     void endCapture() noexcept;
     void failCapture(const world::World& world, const char* why) noexcept;
+    template <class Part>
+    void tryCapture(const world::World& world, const Part& part) noexcept;
     void fetchCapture(world::World& world);
     void dropCaptures() noexcept;
     void collectCaptures(world::World& world);
@@ -116,24 +119,24 @@ class Server {
 
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
-    core::HandlePool<FwPeerId, Peer> peers_;
+    core::HandlePool<FwPeerId, Peer> peers_{"Peer", memory_};
     world::Recording& recording_;
-    RecordLog log_;
+    RecordLog log_{memory_};
     uint32_t step_ = 0, stepEnd_ = 0;  // how far it is, and the records that are before that
     double now_ = 0;                   // s
     uint64_t identity_ = 0;
     double identityAt_ = -1;
     uint64_t pushed_ = 0, pushedBefore_ = 0;  // bytes of records
     double changeRate_ = 0, changeRateAt_ = 0;
-    std::pmr::vector<Capture> captures_;  // oldest first
-    size_t stateBytes_ = 0;               // of the newest
-    bool capturing_ = false;              // one is on its way
-    bool captureRequested_ = false;       // it is of what is in `recorded_`
-    double captureFailedAt_ = -1e9;       // s
+    std::pmr::vector<Capture> captures_{memory_};  // oldest first
+    size_t stateBytes_ = 0;                        // of the newest
+    bool capturing_ = false;                       // one is on its way
+    bool captureRequested_ = false;                // it is of what is in `recorded_`
+    double captureFailedAt_ = -1e9;                // s
     StateHead recorded_;
-    uint32_t captureCount_ = 0;           // noted so far
-    std::pmr::vector<std::byte> packet_;  // scratch
-    Record record_;                       // scratch
+    uint32_t captureCount_ = 0;                    // noted so far
+    std::pmr::vector<std::byte> packet_{memory_};  // scratch
+    Record record_;                                // scratch
 };
 
 }  // namespace fw::net

@@ -371,7 +371,6 @@ TEST(VolumeNeighbours, LeanMergeAndNeverPop) {
             EXPECT_GT(out[0].height, height * 0.999f);
         } else if (gap > height) {
             EXPECT_EQ(out[0].merged, 0.0f);
-            EXPECT_NE(out[0].group, out[1].group);
             EXPECT_FLOAT_EQ(out[0].height, height);
         }
         if (were && distance > 0.05f) {
@@ -400,14 +399,14 @@ TEST(VolumeNeighbours, LeanMergeAndNeverPop) {
     EXPECT_GT(f.size.height, height) << "together they are taller";
 }
 
-TEST(VolumeNeighbours, ChainsAreOneGroup) {
+TEST(VolumeNeighbours, FlamesOfAChainMerge) {
     std::vector<NeighbourFlame> row;
     for (int k = 0; k < 40; ++k)
         row.push_back(
             {vec3(0.9f * float((k * 7) % 20) + (k >= 20 ? 100.0f : 0.0f), 0, 0), 60, 0.6f, 0.6f});
     std::vector<Neighbourhood> out(row.size());
     updateNeighbours(row, vec3(0, 1, 0), out);
-    for (size_t k = 0; k < row.size(); ++k) EXPECT_EQ(out[k].group, k < 20 ? 0u : 20u) << k;
+    for (size_t k = 0; k < row.size(); ++k) EXPECT_GT(out[k].merged, 0.0f) << k;
     updateNeighbours({}, vec3(0, 1, 0), {});
     std::vector<NeighbourFlame> same(3, NeighbourFlame{vec3(1), 60, 0.6f, 0.6f});
     updateNeighbours(same, vec3(0, 1, 0), std::span(out).first(3));
