@@ -33,7 +33,8 @@ void resetTile(uint local, uint lane) {
         tileHeat[worldTile] = TileHeat(0u, 0u);
         tileFire[worldTile] = 0.0;
     }
-    if ((objects[object].flags & kObjectExtended) != 0u) extensionReset(object, texel, material, slow, burns);
+    if ((objects[object].flags & kObjectExtended) != 0u)
+        extensionReset(object, texel, material, slow, burns);
 }
 
 void main() {

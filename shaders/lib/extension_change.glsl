@@ -1,3 +1,3 @@
-// Of an object that an extension burns: a texel changed. The shaders of an extension include its own
-// file of this name.
+// Of an object that an extension burns: a texel changed. The shaders of an extension include its
+// own file of this name.
 void extensionChanged(uint object, uint texel, bool burns) {}
