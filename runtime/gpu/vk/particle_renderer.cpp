@@ -46,7 +46,8 @@ void ParticleRenderer::record(const EmitterUpdate& update, FrameRecorder& record
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
     particlesByFlipbook =
         std::all_of(emitters.begin(), emitters.end(), [](const ParticleEmitter& emitter) {
-            return emitter.flipbooks != 0 && (emitter.smokeFlipbooks != 0 || emitter.life.w == 0);
+            return emitter.fireFlipbooks != 0 &&
+                   (emitter.smokeFlipbooks != 0 || emitter.life.w == 0);
         });
     recorder.upload(FW_BIND_EMITTERS, 0, emitters);
     recorder.upload(FW_BIND_EMITTER_GROUPS, 0, update.groups);
