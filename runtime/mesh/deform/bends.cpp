@@ -22,7 +22,7 @@ constexpr float kEven = 0.02f;   // of the span, that the middle of two ends may
 // Squared, of the particles at edges to all particles: 16 for a square sheet.
 constexpr double kOpen = 4;
 
-vec3 placeOf(const DeformParticle& particle) { return {particle.x, particle.y, particle.z}; }
+vec3 restPlace(const DeformParticle& particle) { return {particle.x, particle.y, particle.z}; }
 
 // The two directions in which a mesh is widest, and how wide it is there.
 struct Axes {
@@ -33,13 +33,13 @@ Axes axesOf(std::span<const DeformParticle> particles) {
     double weights = 0;
     glm::dvec3 middle(0);
     for (const DeformParticle& particle : particles) {
-        middle += glm::dvec3(placeOf(particle)) * double(particle.area);
+        middle += glm::dvec3(restPlace(particle)) * double(particle.area);
         weights += double(particle.area);
     }
     middle /= std::max(weights, 1e-30);
     double m[3][3]{};
     for (const DeformParticle& particle : particles) {
-        const glm::dvec3 d = glm::dvec3(placeOf(particle)) - middle;
+        const glm::dvec3 d = glm::dvec3(restPlace(particle)) - middle;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c) m[r][c] += d[r] * d[c] * double(particle.area);
     }
@@ -75,7 +75,7 @@ Axes axesOf(std::span<const DeformParticle> particles) {
         axes.along[i] = vec3(vectors[order[i]]);
         double low = 1e30, high = -1e30;
         for (const DeformParticle& particle : particles) {
-            const auto at = double(gpu::dot(placeOf(particle), axes.along[i]));
+            const auto at = double(gpu::dot(restPlace(particle), axes.along[i]));
             low = std::min(low, at);
             high = std::max(high, at);
         }
@@ -92,7 +92,7 @@ class Cells {
         FW_ASSERT(side > 0, "%g m", double(side));
         mask_ = std::bit_ceil(uint32_t(particles.size()) + 1) - 1;
         lists_ = groupBy(mask_ + 1, uint32_t(particles.size()), memory,
-                         [&](uint32_t i) { return bucket(cell(placeOf(particles[i]))); });
+                         [&](uint32_t i) { return bucket(cell(restPlace(particles[i]))); });
     }
     // All within `side` of a place, and others.
     template <class Do>
@@ -143,12 +143,12 @@ void findBends(DeformModel& model, std::pmr::memory_resource* memory) {
         const uint32_t behind = 2 * set, ahead = behind + 1;
         for (uint32_t i = 0; i < particles.size(); ++i) {
             DeformParticle& particle = particles[i];
-            const vec3 sought = placeOf(particle) + along;
+            const vec3 sought = restPlace(particle) + along;
             uint32_t best = kNone;
             float least = kAside * model.span;
             cells.near(sought, [&](uint32_t other) {
                 const DeformParticle& there = particles[other];
-                const float off = gpu::length(placeOf(there) - sought);
+                const float off = gpu::length(restPlace(there) - sought);
                 // The lowest of several equally near ones, whatever the order of the cells.
                 if (off > least || (off == least && other >= best) ||
                     there.bendEnds[behind] != kNone || ((there.flags ^ particle.flags) & 7u) ||
@@ -161,14 +161,14 @@ void findBends(DeformModel& model, std::pmr::memory_resource* memory) {
             particle.bendEnds[ahead] = particles[best].vertex;
             particles[best].bendEnds[behind] = particle.vertex;
             particle.bendLength[ahead] = particles[best].bendLength[behind] =
-                gpu::length(placeOf(particles[best]) - placeOf(particle));
+                gpu::length(restPlace(particles[best]) - restPlace(particle));
         }
         for (DeformParticle& particle : particles) {
             if (particle.bendEnds[behind] == kNone || particle.bendEnds[ahead] == kNone) continue;
-            const vec3 middle = (placeOf(particles[model.particleOf[particle.bendEnds[behind]]]) +
-                                 placeOf(particles[model.particleOf[particle.bendEnds[ahead]]])) *
+            const vec3 middle = (restPlace(particles[model.particleOf[particle.bendEnds[behind]]]) +
+                                 restPlace(particles[model.particleOf[particle.bendEnds[ahead]]])) *
                                 0.5f;
-            const vec3 normal = facing(particle), off = middle - placeOf(particle);
+            const vec3 normal = facing(particle), off = middle - restPlace(particle);
             particle.bendRise[set] = gpu::dot(off, normal);
             if (gpu::length(off - normal * particle.bendRise[set]) < kEven * model.span)
                 particle.flags |= gpu::kParticleBendsEven << set;
