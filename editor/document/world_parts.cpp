@@ -156,8 +156,8 @@ FwBurnableMeshDef burnableDefOf(const Mesh& mesh) {
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     const std::array<float, 16> transform = transformOf(mesh);
     std::copy(transform.begin(), transform.end(), def.transform);
-    const auto flag = [&](bool on, FwBurnableFlags which) {
-        if (on) def.flags |= static_cast<uint32_t>(which);
+    const auto flag = [&](bool on, uint32_t which) {
+        if (on) def.flags |= which;
     };
     flag(mesh.hidden, FW_BURNABLE_HIDDEN);
     flag(mesh.twoSided, FW_BURNABLE_TWO_SIDED);
