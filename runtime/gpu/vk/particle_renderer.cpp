@@ -46,12 +46,8 @@ void ParticleRenderer::record(const EmitterUpdate& update, FrameRecorder& record
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
     particlesByFlipbook =
         std::all_of(emitters.begin(), emitters.end(), [](const ParticleEmitter& emitter) {
-<<<<<<< HEAD
-            return emitter.fireFlipbooks != 0 && (emitter.smokeFlipbooks != 0 || emitter.life.w == 0);
-=======
             return emitter.fireFlipbooks != 0 &&
                    (emitter.smokeFlipbooks != 0 || emitter.life.w == 0);
->>>>>>> d8d493d1a98cc10bd0d8e5c266d030e877ea20f7
         });
     recorder.upload(FW_BIND_EMITTERS, 0, emitters);
     recorder.upload(FW_BIND_EMITTER_GROUPS, 0, update.groups);
