@@ -225,16 +225,16 @@ FW_SHARED_CONST float kNoPath = 60000.0f;  // m along unburnt links to a pin: no
 // find, or is gone and neighbours report it to each other in circles. It grows faster than such
 // circles, so a falling piece is not held back and a held piece yields little.
 FW_SHARED_CONST float kPathGrowth = 1.03f;
-FW_SHARED_FN bool isPathKnown(float way, float before) { return way <= before * 1.004f; }
-FW_SHARED_FN float nextPath(float way, float before, bool known) {
-    return min(known && !isPathKnown(way, before) ? way * kPathGrowth : way, kNoPath);
+FW_SHARED_FN bool isPathKnown(float path, float before) { return path <= before * 1.004f; }
+FW_SHARED_FN float nextPath(float path, float before, bool known) {
+    return min(known && !isPathKnown(path, before) ? path * kPathGrowth : path, kNoPath);
 }
 FW_SHARED_CONST float kPathSlack = 1.001f;   // tolerance of half-float storage
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // packed bends, per m
 FW_SHARED_CONST float kCharredSteps = 15.0f;  // resolution of the charred share that neighbours see
 // The link cache is updated every kLinkCacheSteps steps: fire takes seconds.
 FW_SHARED_CONST uint kLinkCacheSteps = 4u;
-FW_SHARED_FN bool updatesLinkCache(uint way) { return way % kLinkCacheSteps == 0u; }
+FW_SHARED_FN bool updatesLinkCache(uint step) { return step % kLinkCacheSteps == 0u; }
 // Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4
 // times the second factor. With velocities this is stable below 4/3.
 FW_SHARED_CONST float kLinkRelax = 0.2f;
@@ -269,8 +269,8 @@ FW_SHARED_FN uint pinnedOf(uint facts) { return (facts >> 12u) & 1u; }
 
 // The path length to a pin is stored in the low bits of the position: an error of a millionth.
 FW_SHARED_CONST uint kPathKnown = 0x8000u;  // the path once had this length
-FW_SHARED_FN uint packPathLength(float way, bool known) {
-    return (packHalf2x16(vec2(way, 0.0f)) & 0x7FFFu) | (known ? kPathKnown : 0u);
+FW_SHARED_FN uint packPathLength(float path, bool known) {
+    return (packHalf2x16(vec2(path, 0.0f)) & 0x7FFFu) | (known ? kPathKnown : 0u);
 }
 FW_SHARED_FN float unpackPathLength(uint bits) { return unpackHalf2x16(bits & 0x7FFFu).x; }
 FW_SHARED_CONST uint kPathLowMask = 31u;   // mask of the bits in x and y

@@ -229,7 +229,7 @@ struct OcclusionWalk {  // visits the cells that a segment crosses, face by face
     ivec3 strides;   // to the next cell
     ivec3 room;      // cells left in the grid, per axis
     uvec3 ahead;     // mm along the axis from the start to the next face
-    uvec3 way;       // mm along the axis, whole segment
+    uvec3 span;      // mm along the axis, whole segment
 };
 
 struct OcclusionAxis {
@@ -268,7 +268,7 @@ FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, iv
     w.strides = ivec3(0, 0, 0);
     w.room = ivec3(0, 0, 0);
     w.ahead = uvec3(1u, 1u, 1u);
-    w.way = uvec3(0u, 0u, 0u);
+    w.span = uvec3(0u, 0u, 0u);
     ivec3 d = b - a;
     if (g.occlusionCell == 0u || !isWithinExchangeRange(d)) return w;
     ivec3 low = ivec3(g.occlusionX, g.occlusionY, g.occlusionZ);
@@ -295,7 +295,7 @@ FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, iv
     w.strides = ivec3(x.stride, y.stride * n.x, z.stride * n.x * n.y);
     w.room = ivec3(x.room, y.room, z.room);
     w.ahead = uvec3(x.ahead, y.ahead, z.ahead);
-    w.way = uvec3(absolute(d.x), absolute(d.y), absolute(d.z));
+    w.span = uvec3(absolute(d.x), absolute(d.y), absolute(d.z));
     // Rounding may place the entry beside the grid: then it never is within.
     w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side &&
                at.z <= n.z * side;
@@ -304,12 +304,12 @@ FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, iv
 
 // Moves to the next cell. Products of a length and a distance ahead stay below 2^31.
 FW_SHARED_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
-    bool alongX = w.ahead.x * w.way.y < w.ahead.y * w.way.x;
-    uint ahead = alongX ? w.ahead.x : w.ahead.y, way = alongX ? w.way.x : w.way.y;
-    bool alongZ = w.ahead.z * way < ahead * w.way.z;
+    bool alongX = w.ahead.x * w.span.y < w.ahead.y * w.span.x;
+    uint ahead = alongX ? w.ahead.x : w.ahead.y, span = alongX ? w.span.x : w.span.y;
+    bool alongZ = w.ahead.z * span < ahead * w.span.z;
     uint axis = alongZ ? 2u : (alongX ? 0u : 1u);
     w.passed = alongZ ? w.ahead.z : ahead;
-    w.of = alongZ ? w.way.z : way;
+    w.of = alongZ ? w.span.z : span;
     int room = axis == 0u ? w.room.x : (axis == 1u ? w.room.y : w.room.z);
     w.within = room > 0 && w.passed < w.of;
     if (axis == 0u) {

@@ -168,7 +168,7 @@ FW_SHARED_FN int pairStart(int ra, int rb, int w) {
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
 
-// Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way.
+// Slope of the travel time from source a to source b, 1/16 ticks over the whole distance.
 // Arrival is convex along it: if the slope does not outweigh the delay of b, a alone is best. l:
 // length of a, 1/8 units.
 FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay

@@ -240,18 +240,19 @@ FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 u
 }
 
 // Leg at birth, at `at`, from a source that moves at `carried`.
-FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3 way,
+FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3 direction,
                                 vec3 carried) {
     vec3 up = vec3(s.up), wind = vec3(s.wind);
-    vec3 r = particleAcross(way), u = cross(r, way);
+    vec3 r = particleAcross(direction), u = cross(r, direction);
     float a = particleGauss(seed + 8u) * s.direction.w,
           b = particleGauss(seed + 9u) * s.direction.w;
     vec3 thrown =
         vec3(particleGauss(seed + 10u), particleGauss(seed + 11u), particleGauss(seed + 12u));
     SparkLeg leg;
     leg.from = at;
-    leg.speed = normalize(way + r * a + u * b) * s.half_.w * (0.7f + 0.6f * hashUnit(seed + 13u)) +
-                thrown * (0.22f * s.half_.w + 0.4f) + carried;
+    leg.speed =
+        normalize(direction + r * a + u * b) * s.half_.w * (0.7f + 0.6f * hashUnit(seed + 13u)) +
+        thrown * (0.22f * s.half_.w + 0.4f) + carried;
     leg.settled = wind - up * (kind.fall * kind.tau);
     leg.plume = s.wind.w * (0.5f + 0.7f * hashUnit(seed + 14u)) * mix(1.0f, 0.8f, kind.ember);
     leg.began = 0.0f;
@@ -259,8 +260,8 @@ FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 a
     return leg;
 }
 // Offset on the source from its middle, m.
-FW_SHARED_FN vec3 sparkOff(vec3 way, float radius, vec3 half_, uint seed) {
-    vec3 r = particleAcross(way), u = cross(r, way);
+FW_SHARED_FN vec3 sparkOff(vec3 direction, float radius, vec3 half_, uint seed) {
+    vec3 r = particleAcross(direction), u = cross(r, direction);
     float disc = radius * sqrt(hashUnit(seed + 15u)), turn = 6.2831853f * hashUnit(seed + 16u);
     return (r * cos(turn) + u * sin(turn)) * disc + half_ * (2.0f * hashUnit(seed + 17u) - 1.0f);
 }
