@@ -70,7 +70,7 @@ void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeS
     march.slabs = 1;
     march.intervals = draw.intervals;
     march.tilesX = card.tilesX;
-    march.cells = card.tilesX * card.tilesY * kMarchTileSide * kMarchTileSide;
+    march.pixels = card.tilesX * card.tilesY * kMarchTileSide * kMarchTileSide;
     march.tiles = slot * kImpostorWords;
     march.samples = march.tiles + kMaxImpostorTiles * kMarchTileWords;
     march.encoding = screen.encoding;

@@ -245,7 +245,7 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
         march.originX = tiles.originX;
         march.originY = tiles.originY;
         march.tilesX = tiles.x;
-        march.cells = count * kMarchTileSide * kMarchTileSide;
+        march.pixels = count * kMarchTileSide * kMarchTileSide;
         march.tiles = known;
         march.samples = samples;
         march.encoding = screen.encoding;
@@ -280,7 +280,7 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
             whole.window = vec4((low - from) / per, (high - from) / per);
         }
         known += count * kMarchTileWords;
-        samples += march.cells * kMarchPixelWords * draw.slabs;
+        samples += march.pixels * kMarchPixelWords * draw.slabs;
     }
     return laid;
 }

@@ -144,7 +144,7 @@ struct MarchPush {
     uint intervals;
     uint originX; uint originY; // march pixels of the view
     uint tilesX;
-    uint cells;           // per slab
+    uint pixels;          // per slab
     uint tiles;           // words of FW_BIND_VOLUME_RAYS: first of its tile data
     uint samples;         // first of its march pixels
     uint encoding;        // FwOutputEncoding of the target

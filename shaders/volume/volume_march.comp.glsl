@@ -27,7 +27,7 @@ vec4 keep(vec4 before, vec4 shown, uint s, uint pixel, vec3 where_) {
     float half_ = sqrt(3.0 * max(where_.z / max(where_.x, 1e-20) - middle * middle, 1e-4));
     half_ = min(half_, min(middle, 1.0 - middle));  // within the slab, around the same middle
     vec2 reach = vec2(middle - half_, middle + half_);
-    uint at = march.samples + kMarchPixelWords * (march.cells * s + pixel);
+    uint at = march.samples + kMarchPixelWords * (march.pixels * s + pixel);
     rays[at] = packHalf2x16(color.rg);
     rays[at + 1u] = packHalf2x16(color.ba);
     rays[at + 2u] = packSlabRange(reach, 1.0 - before.a);
@@ -35,7 +35,7 @@ vec4 keep(vec4 before, vec4 shown, uint s, uint pixel, vec3 where_) {
 }
 
 void nothing(uint s, uint pixel, float through) {
-    uint at = march.samples + kMarchPixelWords * (march.cells * s + pixel);
+    uint at = march.samples + kMarchPixelWords * (march.pixels * s + pixel);
     rays[at] = rays[at + 1u] = 0u;
     rays[at + 2u] = packSlabRange(vec2(0.0, 1.0), through);
 }
@@ -46,7 +46,7 @@ void main() {
     FlameRecord f = flame.record;
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
-    uint tiles = march.cells / (kMarchTileSide * kMarchTileSide);
+    uint tiles = march.pixels / (kMarchTileSide * kMarchTileSide);
     uint tile = rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
     uint slabs = march.slabs | zero, turns = march.turns | zero;
     uint all = slabs * turns;

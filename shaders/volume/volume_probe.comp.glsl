@@ -19,7 +19,7 @@ void main() {
     FlameRecord f = flame.record;
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
-    uint tilesY = march.cells / (kMarchTileSide * kMarchTileSide * march.tilesX);
+    uint tilesY = march.pixels / (kMarchTileSide * kMarchTileSide * march.tilesX);
     uint blocksX = probeBlockCount(march.tilesX, march.apart);
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ =
@@ -81,7 +81,7 @@ void main() {
     bool fire = farthest >= 0.0;
     uint end = 1u + (fire ? uint(min(farthest + 2.0, most)) : 0u);
     uint begin = fire ? uint(most - max(nearest - 1.0, 0.0)) : 0u;
-    uint tiles = march.cells / (kMarchTileSide * kMarchTileSide);
+    uint tiles = march.pixels / (kMarchTileSide * kMarchTileSide);
     if (all(lessThan(at, kMarchQuarterSide * uvec2(quarters))) && (fire || smokes)) {
         // Its own quarter tile and the eight around it.
         for (uint j = 0u; j < 9u; ++j) {

@@ -2019,7 +2019,7 @@ TEST(MarchLayout, FitsAnyFlamesIntoTheMemory) {
             EXPECT_EQ(march.samples, sample);
             EXPECT_EQ(shown.samples, sample);
             known += gpu::kMarchTileWords * shown.tilesX * shown.tilesY;
-            sample += march.cells * march.slabs * gpu::kMarchPixelWords;
+            sample += march.pixels * march.slabs * gpu::kMarchPixelWords;
             EXPECT_GE(float(shown.tilesX * gpu::kMarchTileSide) * cell(i), 1280.0f);
             EXPECT_GE(float(shown.tilesY * gpu::kMarchTileSide) * cell(i), 720.0f);
         }
