@@ -343,7 +343,7 @@ class EveryPass : public GpuTest {
         }
         if (what.effects) plan.emitters = &emitters;
         std::vector<gpu::FieldRun> runs;
-        for (uint32_t i = 0; scene_->referenceModel == nullptr && i < 3; ++i)
+        for (uint32_t i = 0; !scene_->refinesByReference && i < 3; ++i)
             runs.push_back({i, fieldStep_});
         const uint32_t rounds[] = {uint32_t(runs.size())}, drawn[] = {0, 1, 2};
         ++fieldStep_;
@@ -466,7 +466,7 @@ class EveryPass : public GpuTest {
     // and again in a reused slot.
     void burn() {
         frame({});
-        if (scene_->referenceModel) {
+        if (scene_->refinesByReference) {
             const float corner[3] = {0.25f, 0.25f, 0.25f};
             rig_->backend.startBoundary(1, corner, now_);
         }
@@ -494,7 +494,7 @@ class EveryPass : public GpuTest {
         rig_->backend.createObject(0, scene_->init(0));
         frame({gpu::kEventIgnite, 1, 2, 0, true, true});
         for (int i = 0; i < 2; ++i) frame({.steps = 4});
-        if (!scene_->referenceModel) restoreBox();
+        if (!scene_->refinesByReference) restoreBox();
         frame({.steps = 4});
         rig_->alsoRecord = nullptr;
         (void)rig_->finish();
