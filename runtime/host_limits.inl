@@ -4,7 +4,6 @@ FW_LIMIT("Frame", kFramesInFlight, 16u, "frames", "in flight, submitted and not 
 FW_LIMIT("Frame", kDrawnViews, 16u, "views", "drawn in a frame")
 FW_LIMIT("Frame", kPreparedViews, 4u, "views", "of fwWorld_RecordOutsideViews")
 FW_LIMIT("Frame", kSampledDraws, 16u, "calls", "against a sampled depth in a frame")
-FW_LIMIT("Frame", kComposites, 8u, "calls", "of fwWorld_RecordComposite without FW_COMPOSITE_KEEP in a frame")
 FW_LIMIT("Frame", kStepsPerFrame, 64u, "steps", "of 1/32 s in a frame (FwWorldDef::maxStepsPerFrame)")
 FW_LIMIT("Mesh", kMaterials, gpu::kMaterialsPerObject, "materials", "of a mesh")
 FW_LIMIT("Mesh", kVertices, 16u << 20, "vertices", "of a mesh")

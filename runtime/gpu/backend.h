@@ -1,6 +1,6 @@
-// The narrow interface that the world sees: where the burn simulation runs. Two of them: vk
-// (records into a command buffer) and cpu (the same integers, at once, no device). Plain data in,
-// readbacks out; a backend decides nothing about the game.
+// The interface between the world and the burn simulation. Two backends implement it: vk records
+// into a command buffer; cpu computes the same integers at once, without a device. Plain data goes
+// in, readbacks come out.
 #pragma once
 #include "mesh/deform/model.h"
 #include "mesh/refine/model.h"
@@ -37,11 +37,11 @@ struct ObjectInit {
     float refinePixelsPerEdge = 8;
     bool refineExtended = false;         // by an extension
     HeatBoundary boundary;               // then
-    std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
-    // Of an object that deforms; the model outlives the mesh. Bases are the backend's to fill.
+    std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat per texel
+    // For objects that deform; the model outlives the mesh. The backend fills the bases.
     const mesh::DeformModel* deformModel = nullptr;
     const DeformObject* deform = nullptr;
-    float shape[3] = {1, 1, 1};  // what the mesh was stretched by since the host gave it
+    float shape[3] = {1, 1, 1};  // by which the mesh was stretched since the host gave it
 };
 
 struct MaterialUpdate {  // new records of one object at a step's start (a wind or pose latch)
@@ -51,8 +51,8 @@ struct MaterialUpdate {  // new records of one object at a step's start (a wind 
     uint32_t substepShift = 0;
 };
 
-// Who is where, as others see it, from a step's start on. Objects are known to the exchange from
-// their first update on.
+// Places of objects for the exchange, from a step's start on. The exchange knows an object from its
+// first update on.
 struct ExchangeUpdate {
     struct Placed {
         uint32_t object = 0;
@@ -62,16 +62,16 @@ struct ExchangeUpdate {
         uint32_t first = 0, count = 0;
     };
     std::span<const Placed> objects;  // that changed
-    // All lists in one array: slot | what is seen of it, of 255, << 24.
+    // All lists in one array: slot | visible share, of 255, << 24.
     std::span<const uint32_t> neighbours;
     std::span<const Range> neighbourRanges;  // of it, that changed
-    // The same of links. Those of one (object, texel) are side by side; kNoneTexel: of no object.
+    // Likewise. The links of one (object, texel) are side by side; kNoneTexel: of no object.
     std::span<const ContactLink> links;
     std::span<const Range> linkRanges;
     std::span<const HeatOccluder> occluders;  // all of them, at most kMaxHeatOccluders
 };
 
-// All of the shield, in place of the one that was. See exchange.h.
+// The whole heat-occlusion grid, in place of the last one. See exchange.h.
 struct OcclusionUpdate {
     ivec3 origin{};                 // mm
     uint32_t cell = 0, counts = 0;  // as ExchangePush has them; cell 0: there is none
@@ -91,11 +91,11 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool reduce = false;        // also count burning texels and rebuild BurnTiles
     bool heat = false;          // also a heat step: kHeatSteps steps at once, at its start
     bool rooms = false;         // with `heat`, before it: some room is there, or was
-    bool exchange = false;      // with `reduce`: fire at a distance, and who may go on burning
+    bool exchange = false;      // with `reduce`: heat between objects, and the burn budget
     bool governed = false;      // some object or the world limits its fire
     bool capped = false;        // and how many tiles may burn
     bool plays = false;         // some object may play a baked burn
-    ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
+    ExchangePush rules{};       // of the exchange; the backend fills the parts about lists
     const ExchangeUpdate* remote = nullptr;   // null: nothing changed
     const OcclusionUpdate* shield = nullptr;  // null: as it was; none at first, and after `restore`
     std::span<const TexelEvent> events;       // sorted by (object, texel, order)
@@ -107,21 +107,21 @@ struct Probe {
 };
 
 struct VolumeFlame;    // shared/volume_flame.h
-struct VolumeUpdate {  // the volumetric flames that draws show from this frame on; looks only
+struct VolumeUpdate {  // the volumetric flames that draws show from this frame on; cosmetic
     const VolumeFlame* flames = nullptr;  // their bounds are in the records
     uint32_t count = 0;                   // at most kMaxVolumeFlames
 };
 
 struct ParticleEmitter;  // shared/particle.h
 struct SparkSource;      // shared/spark.h
-struct EmitterUpdate {   // fire emitters in this frame; looks only
+struct EmitterUpdate {   // fire emitters in this frame; cosmetic
     const ParticleEmitter* records = nullptr;
     uint32_t count = 0;
     std::span<const uvec2> groups;        // record, first of kParticleGroup slots of its ring
     uint32_t particleEnd = 0;             // behind the last particle of any of them
-    uint32_t particles = 0;               // of all rings that may show what hides
-    uint32_t lightParticles = 0;          // of those that may show what emits alone
-    const SparkSource* sparks = nullptr;  // those of them that throw some
+    uint32_t particles = 0;               // of all rings that may show particles that occlude
+    uint32_t lightParticles = 0;          // of rings that may show particles that only emit
+    const SparkSource* sparks = nullptr;  // emitters that throw some
     uint32_t sparkCount = 0;
     uint32_t sparkQuads = 0;  // of all of those, at most
 };
@@ -132,18 +132,18 @@ struct FieldDraw;  // shared/field_draw.h
 struct FieldUpdate {
     std::span<const FieldRun> runs;    // round by round; in one a field is once at most
     std::span<const uint32_t> rounds;  // where each ends
-    // That are shown, by slot; where their cells are is the backend's to fill. Looks only.
+    // Of the fields that are shown; the backend fills where their cells are. Cosmetic.
     const FieldDraw* draws = nullptr;
-    std::span<const uint32_t> drawn;  // slots of those
+    std::span<const uint32_t> drawn;  // their slots
 };
 
-// All of an object that its future hangs on. What is not in it follows from it, or shows nothing
-// that a step could not bring back.
+// Everything that decides an object's future. The rest of its state follows from it, or steps bring
+// it back.
 struct ObjectImage {
     uint32_t object = 0;
     std::span<const uint32_t> ticks;  // codes, by texel
     std::span<const uvec2> heat;      // packed HeatTexel; empty: none
-    // By tile: of the flag the bits of kTileKept, and lastChange. The rest is of no account.
+    // By tile: the bits kTileKept of the flag, and lastChange. The rest is ignored.
     std::span<const TileState> tiles;
     std::span<const TileHeat> tileHeat;
     ObjectCounters counters;
@@ -154,24 +154,24 @@ struct RestoredObject {
     ObjectImage image;
     BurnMaterial materials[kMaterialsPerObject];
     uint32_t window = 0, substepShift = 0;
-    bool rests = false;  // nothing of it burnt: of its image there are the counters alone
+    bool rests = false;  // no part of it burnt: its image has counters alone
 };
 
-// How much of what only shows a frame may have. Never of what burns: hashes are alike at all
-// levels.
+// The cosmetic detail that a frame may have. It does not decide what burns: burn hashes are equal
+// at all levels.
 struct Detail {
     uint32_t marchedHigh = 16;   // volumetric flames at most, with many samples a ray
-    uint32_t marched = 32;       // and at all; the others are cards
+    uint32_t marched = 32;       // and in all; the others are impostors
     uint32_t rayStepCount = 64;  // samples of a ray at most; see FwWorldDef
     float triangles = 1;         // share of FwWorldDef::maxRefinedTriangles
-    float quads = 1;  // share of flames' quads and particles that show; what shows is larger for it
-    // Share of FwWorldDef::maxLights: the fewer there are, the more each shines for.
+    float quads = 1;  // share of flames' quads and particles that show; the fewer, the larger
+    // Share of FwWorldDef::maxLights: the fewer there are, the more fires each stands for.
     float lights = 1;
     float memory = 1;  // share of what marched flames and quads have otherwise; 1: it never shrinks
 
     [[nodiscard]] bool operator==(const Detail&) const = default;
 };
-// Of `most` lights.
+// The number of lights, of `most`.
 [[nodiscard]] inline uint32_t lightsOf(const Detail& detail, uint32_t most) noexcept {
     return uint32_t(std::ceil(double(detail.lights) * double(most)));
 }
@@ -181,15 +181,15 @@ struct FramePlan {
     std::span<const StepPlan> steps;
     std::span<const Probe> probes;            // answered in this frame's readback, in order
     std::span<const uint32_t> burnMaps;       // object slots whose whole state is read back
-    std::span<const uint32_t> images;         // and those that come as ObjectImages, by slot
+    std::span<const uint32_t> images;         // object slots that are read back as ObjectImages
     uint32_t switches = 0;                    // FwDebugSwitch
     uint32_t endTick = 0;                     // tick after the last step
-    float wind[3] = {};                       // m/s, world; for looks only
-    float tickFraction = 0;                   // into the running step, [0, 1); for looks only
+    float wind[3] = {};                       // m/s, world; cosmetic
+    float tickFraction = 0;                   // into the running step, [0, 1); cosmetic
     const VolumeUpdate* volumes = nullptr;    // null: as before
     const EmitterUpdate* emitters = nullptr;  // null: none, or no time passes for them
     const FieldUpdate* fields = nullptr;      // null: none steps
-    Detail detail;                            // for looks only
+    Detail detail;                            // cosmetic
 };
 
 struct BurnMap {
@@ -240,52 +240,53 @@ class Backend {
     [[nodiscard]] virtual mesh::RefineOptions extendedRefineOptions(uint32_t /*depth*/) const {
         return {};
     }
-    // What objects of the mesh need that refine down to `depth`, by an extension or by the library;
-    // once for each. Looks only.
+    // The data that objects of the mesh share if they refine down to `depth`, by an extension or by
+    // the library; once for each. Cosmetic.
     virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, bool /*extended*/,
                                   const mesh::BurnDomain&, const mesh::RefineModel&,
                                   std::span<const mesh::RefineHoles> /*materials*/) {}
-    // Where its vertices are on the inner skin, once a mesh. Looks only.
+    // Places of its vertices on the inner skin, once a mesh. Cosmetic.
     virtual void createInnerSkin(uint32_t /*mesh*/, const mesh::BurnDomain&,
                                  std::span<const glm::vec3> /*places*/) {}
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
+    // The wind that zones add at an object, packed (shared/wind.h). Cosmetic.
+    virtual void setObjectWind(uint32_t /*slot*/, uint32_t /*wind*/) {}
     // Pose, tint and flags; the rest of the record stays.
-    // What wind zones add where an object is, packed (shared/wind.h); for looks alone.
-    virtual void setObjectWind(uint32_t, uint32_t) {}
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) = 0;
     // The heat boundary of an object with refineExtended begins at a point (m, object space), once.
     virtual void startBoundary(uint32_t /*slot*/, const float /*point*/[3],
                                uint32_t /*tick*/) noexcept {}
-    // Of an object with kObjectSkinned: where the host's vertices are from the next frame on, m,
-    // object space, 3 each; normals 3 each or none. Never throws, needs no memory. Looks alone.
+    // For an object with kObjectSkinned: the host's vertices from the next frame on, m, object
+    // space, 3 each; normals 3 each or none. Never throws, needs no memory. Cosmetic.
     virtual void setVertices(uint32_t slot, std::span<const float> positions,
                              std::span<const float> normals) noexcept = 0;
     // RGBA8 sRGB, with alphaCutoff as FwImageDef's. The cpu backend keeps nothing.
     virtual void createImage(uint32_t slot, uint32_t width, uint32_t height,
                              std::span<const std::byte> pixels, float alphaCutoff) = 0;
-    // Objects that show it fall back to their base colour. Throws before anything changed, where
-    // they need pipelines for that.
+    // Objects that show it fall back to their base colour. May throw, because they may need other
+    // pipelines for that, and then changed nothing.
     virtual void destroyImage(uint32_t slot) = 0;
-    // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Looks alone.
+    // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Cosmetic.
     virtual void setFireProfile(uint32_t /*slot*/, std::span<const uint32_t> /*texels*/) {}
-    // All flipbooks, instead of those before: RGBA8, and words as shared/flipbook.h has them; a
-    // width of 0: there are none. Unchanged when it throws. Looks alone.
+    // All flipbooks, in place of the last ones: RGBA8, and words as in shared/flipbook.h; a width
+    // of 0: there are none. Unchanged when it throws. Cosmetic.
     virtual void setFlipbooks(uint32_t /*width*/, uint32_t /*height*/,
                               std::span<const std::byte> /*texels*/,
                               std::span<const uint32_t> /*words*/) {}
-    // That show burning meshes' flames, from the next frame on: byte 0 fire's + 1, byte 1 smoke's.
-    virtual void setTileFlipbooks(uint32_t /*books*/) noexcept {}
+    // Flipbooks of burning meshes' flames, from the next frame on: byte 0 fire's + 1, byte 1
+    // smoke's.
+    virtual void setTileFlipbooks(uint32_t /*flipbooks*/) noexcept {}
 
-    // All places move by whole metres. Poses and what others see of objects come by themselves.
+    // All places move by whole metres. The world sends poses and exchange updates by itself.
     virtual void moveWorld(const double (&/*by*/)[3]) noexcept {}
 
-    // From the next frame on; its objects say in their flags that they are in it.
+    // From the next frame on; flags of objects name the room that they are in.
     virtual void setRoom(uint32_t slot, const Room& room) noexcept = 0;
 
-    // Particle fields. Masks: a byte per cell, see kFieldWall. It begins empty; a wall that comes
-    // kills what is there. Creation and masking: unchanged when they throw.
+    // Particle fields. Masks: a byte per cell, see kFieldWall. A field begins empty; a new wall
+    // kills the particles there. Creation and masking: unchanged when they throw.
     virtual void createField(uint32_t /*slot*/, const FieldRules&,
                              std::span<const uint8_t> /*masks*/) {}
     virtual void destroyField(uint32_t /*slot*/) noexcept {}
@@ -293,9 +294,9 @@ class Backend {
     virtual void setFieldMasks(uint32_t /*slot*/, std::span<const uint8_t> /*masks*/) {}
     [[nodiscard]] virtual uint64_t fieldBytes(uint32_t /*slot*/) const noexcept { return 0; }
 
-    // All objects as they were when images of these were taken: the others are at rest. Frames go
-    // on from `tick`, and what was to be read back of earlier ones never comes. Neighbours, links
-    // and occluders are sent again. Unchanged when it throws.
+    // Restores all objects: these from their images, the others to their unburnt state. Frames go
+    // on from `tick`; readbacks of earlier frames never come. The world sends neighbours, links and
+    // occluders again. Unchanged when it throws.
     virtual void restore(std::span<const RestoredObject> objects, uint32_t tick) = 0;
 
     // Runs (cpu) or records (vk, between its begin and end of the outside part) a frame's steps.
@@ -306,13 +307,13 @@ class Backend {
     virtual std::span<const PassTime> passTimes() = 0;
     // Memory that this world holds. [any]: also while it is stepped or recorded.
     virtual void memoryRows(std::pmr::vector<MemoryRow>& out) const = 0;
-    // Of device memory that follows a plan's Detail::memory.
+    // Bytes of device memory that follow a plan's Detail::memory.
     [[nodiscard]] virtual uint64_t detailBytes() const noexcept { return 0; }
 
     // Quads of flames, smoke and particles that the last view showed, as far as that is known.
     [[nodiscard]] virtual uint32_t quadsShown() const noexcept { return 0; }
 
-    // Whether it draws: what only looks want is worth making.
+    // Whether it draws: if not, cosmetic data need not be made.
     [[nodiscard]] virtual bool draws() const noexcept { return false; }
 };
 

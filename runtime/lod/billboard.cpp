@@ -1,6 +1,7 @@
-// Volumetric flames as cards: a flame is marched into cells as wide as a part of its diameter,
-// whatever its size on the screen, and for some frames shown as it was, facing the camera, where
-// and as large as it is now.
+// Volumetric flames as impostors: a flame is marched into pixels that are a part of its diameter
+// wide, whatever its size on the screen. Some frames then show this picture, which faces the
+// camera, at the flame's present place and size.
+#include "core/assert.h"
 #include "lod/tiers.h"
 #include "lod/volumes.h"
 
@@ -33,24 +34,25 @@ bool impostorFits(const VolumeItem& item) noexcept {
 }
 
 void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-                   uint32_t slot, ImpostorShape& card, MarchedVolume& out) noexcept {
+                   uint32_t slot, ImpostorShape& impostor, MarchedVolume& out) noexcept {
     const VolumeDraw& draw = item.draw;
     const vec3 at = placeOf(view, item.middle);
     const vec2 metres = metresAt(draw, at.z);
     const vec2 size = metres * vec2(item.whole.z - item.whole.x, item.whole.w - item.whole.y);
+    FW_ASSERT(draw.wide > 0.0f && draw.spacing > 0.0f, "a flame %g m wide", double(draw.wide));
     float cell = draw.wide / kImpostorPixels;
     const auto tiles = [&](float length) {
         return std::max(std::ceil(length / (cell * float(kMarchTileSide))), 1.0f);
     };
     while (tiles(size.x) * tiles(size.y) > float(kMaxImpostorTiles)) cell *= kGrows;
-    card.there = true;
-    card.middle = item.middle - item.base;
-    card.direction = glm::normalize(item.middle - vec3(view.eye));
-    card.low = metres * (vec2(item.whole) - vec2(at));
-    card.cell = cell;
-    card.tilesX = uint32_t(tiles(size.x));
-    card.tilesY = uint32_t(tiles(size.y));
-    card.encoding = screen.encoding;
+    impostor.there = true;
+    impostor.middle = item.middle - item.base;
+    impostor.direction = glm::normalize(item.middle - vec3(view.eye));
+    impostor.low = metres * (vec2(item.whole) - vec2(at));
+    impostor.cell = cell;
+    impostor.tilesX = uint32_t(tiles(size.x));
+    impostor.tilesY = uint32_t(tiles(size.y));
+    impostor.encoding = screen.encoding;
 
     const vec2 perCell = cell / metres;
     out.flame = item.flame;
@@ -69,27 +71,27 @@ void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeS
                       draw.front);
     march.slabs = 1;
     march.intervals = draw.intervals;
-    march.tilesX = card.tilesX;
-    march.pixels = card.tilesX * card.tilesY * kMarchTileSide * kMarchTileSide;
+    march.tilesX = impostor.tilesX;
+    march.cells = impostor.tilesX * impostor.tilesY * kMarchTileSide * kMarchTileSide;
     march.tiles = slot * kImpostorWords;
     march.samples = march.tiles + kMaxImpostorTiles * kMarchTileWords;
     march.encoding = screen.encoding;
     march.apart = 2;
     march.least = 0;
     march.perPixel = kMarchTileSide;  // rays go where the mean of many is the flame
-    out.composite.tilesX = card.tilesX;
-    out.composite.tilesY = card.tilesY;
+    out.composite.tilesX = impostor.tilesX;
+    out.composite.tilesY = impostor.tilesY;
 }
 
 bool showImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-                  uint32_t slot, const ImpostorShape& card, VolumeImpostor& out) noexcept {
+                  uint32_t slot, const ImpostorShape& impostor, VolumeImpostor& out) noexcept {
     const VolumeDraw& draw = item.draw;
-    const vec3 at = placeOf(view, item.base + card.middle);
+    const vec3 at = placeOf(view, item.base + impostor.middle);
     if (draw.clip.z > 0.0f && !(at.z > 1e-3f)) return false;
     const vec2 perMetre = 1.0f / metresAt(draw, at.z);
-    const vec2 perCell = card.cell * perMetre;
+    const vec2 perCell = impostor.cell * perMetre;
     out = {};
-    out.place = vec4(vec2(at) + card.low * perMetre, perCell.x, 0.0f);
+    out.place = vec4(vec2(at) + impostor.low * perMetre, perCell.x, 0.0f);
     out.upY = perCell.y;
     out.clip = draw.clip;
     out.front = draw.front;
@@ -97,8 +99,8 @@ bool showImpostor(const ViewParams& view, const VolumeItem& item, const VolumeSc
     out.base = draw.base;
     out.perX = 2.0f / (screen.size.x * perCell.x);
     out.perY = 2.0f / (screen.size.y * perCell.y);
-    out.tilesX = card.tilesX;
-    out.tilesY = card.tilesY;
+    out.tilesX = impostor.tilesX;
+    out.tilesY = impostor.tilesY;
     out.samples = slot * kImpostorWords + kMaxImpostorTiles * kMarchTileWords;
     out.to = 1.0f;
     return true;

@@ -1,5 +1,6 @@
 #include "lod/impostor_atlas.h"
 
+#include "core/assert.h"
 #include "core/hash.h"
 #include "shared/volume.h"
 
@@ -10,15 +11,16 @@
 namespace fw::lod {
 namespace {
 
-constexpr float kWider = 1.3f;            // at most, than the book's flame, or narrower
-constexpr float kTaller = 1.25f;          // the same of their heights in diameters
-constexpr float kFacing = 0.17f;          // of cosines: 10 degrees where it is seen from the side
-constexpr float kAtlasHysteresis = 1.5f;  // as much further off is what has shown the book already
-constexpr float kStraight = 0.4f;         // diameters off the line from its base to its tip
-constexpr float kWhole = 0.9f;            // of FlameRecord::air.w
-constexpr float kSeenAside = 0.3f;        // of its height: less is seen along its axis
+constexpr float kWider = 1.3f;    // at most, than the atlas's flame, or narrower
+constexpr float kTaller = 1.25f;  // the same of their heights in diameters
+constexpr float kFacing = 0.17f;  // of cosines: 10 degrees where it is seen from the side
+constexpr float kAtlasHysteresis =
+    1.5f;                           // a flame that shows the atlas may differ so many times as much
+constexpr float kStraight = 0.4f;   // diameters off the line from its base to its tip
+constexpr float kWhole = 0.9f;      // of FlameRecord::air.w
+constexpr float kSeenAside = 0.3f;  // of its height: less is seen along its axis
 
-// Pages late, least and most; what turns over needs some of those that are older.
+// Frames late, least and most; a cursor that turns over needs older ones.
 constexpr uint32_t kMinLate = 1, kMaxLate = kAtlasFrames - kAtlasFrameStep - 2;
 
 bool isAlike(const AtlasKind& a, const AtlasKind& b, float keeps) noexcept {
@@ -77,105 +79,107 @@ AtlasKind atlasKind(const FlameRecord& r, const FlameNode* nodes, uint32_t count
 }
 
 void chooseAtlases(std::span<const AtlasItem> items, std::span<const uint32_t> had, uint32_t room,
-                   ImpostorAtlases& books, std::span<uint32_t> out) noexcept {
+                   ImpostorAtlases& atlases, std::span<uint32_t> out) noexcept {
+    FW_ASSERT(out.size() >= items.size() && had.size() >= items.size(), "%zu items", items.size());
     std::fill(out.begin(), out.end(), kNoAtlas);
     const auto take = [&](uint32_t number) {
-        ImpostorAtlas& book = books[number];
-        book.shares = 0;
+        ImpostorAtlas& atlas = atlases[number];
+        atlas.shares = 0;
         for (size_t i = 0; i < items.size(); ++i) {
             const AtlasItem& item = items[i];
             if (!item.wants || out[i] != kNoAtlas ||
-                !isAlike(item.kind, book.kind, had[i] == number ? kAtlasHysteresis : 1.0f))
+                !isAlike(item.kind, atlas.kind, had[i] == number ? kAtlasHysteresis : 1.0f))
                 continue;
             out[i] = number;
-            ++book.shares;
+            ++atlas.shares;
         }
     };
-    // Whose pages a book gets: the largest of those that want it and are like it.
-    const auto lead = [&](ImpostorAtlas& book, const auto& may) {
+    // An atlas follows the largest of the flames that want it and are like it.
+    const auto lead = [&](ImpostorAtlas& atlas, const auto& may) {
         const AtlasItem* best = nullptr;
         for (size_t i = 0; i < items.size(); ++i)
             if (items[i].wants && items[i].fits && items[i].kind.plain && out[i] == kNoAtlas &&
                 may(i) && (!best || items[i].covers > best->covers))
                 best = &items[i];
         if (!best) return false;
-        if (book.key != best->key) ++book.run;
-        book.key = best->key;
-        book.kind = best->kind;
+        if (atlas.key != best->key) ++atlas.run;
+        atlas.key = best->key;
+        atlas.kind = best->kind;
         return true;
     };
     for (uint32_t b = 0; b < kMaxImpostorAtlases; ++b) {
-        ImpostorAtlas& book = books[b];
-        if (!book.used) continue;
-        book.used =
+        ImpostorAtlas& atlas = atlases[b];
+        if (!atlas.used) continue;
+        atlas.used =
             b < room &&
-            (lead(book,
+            (lead(atlas,
                   [&](size_t i) {
-                      return items[i].key == book.key &&
-                             isAlike(items[i].kind, book.kind, kAtlasHysteresis);
+                      return items[i].key == atlas.key &&
+                             isAlike(items[i].kind, atlas.kind, kAtlasHysteresis);
                   }) ||
-             lead(book, [&](size_t i) {
-                 return isAlike(items[i].kind, book.kind, had[i] == b ? kAtlasHysteresis : 1.0f);
+             lead(atlas, [&](size_t i) {
+                 return isAlike(items[i].kind, atlas.kind, had[i] == b ? kAtlasHysteresis : 1.0f);
              }));
-        if (book.used) take(b);
+        if (atlas.used) take(b);
     }
     for (uint32_t b = 0; b < std::min(room, kMaxImpostorAtlases); ++b) {
-        ImpostorAtlas& book = books[b];
-        if (book.used) continue;
-        const uint32_t run = book.run + 1;
-        book.used = lead(book, [](size_t) { return true; });
-        if (!book.used) return;
-        book.run = run;
-        book.written = 0;
+        ImpostorAtlas& atlas = atlases[b];
+        if (atlas.used) continue;
+        const uint32_t run = atlas.run + 1;
+        atlas.used = lead(atlas, [](size_t) { return true; });
+        if (!atlas.used) return;
+        atlas.run = run;
+        atlas.written = 0;
         take(b);
     }
 }
 
-void AtlasCursor::read(uint32_t number, const ImpostorAtlases& books) noexcept {
-    const ImpostorAtlas& shown = books[number];
+void AtlasCursor::read(uint32_t number, const ImpostorAtlases& atlases) noexcept {
+    FW_ASSERT(number < kMaxImpostorAtlases && atlases[number].written > 0, "atlas %u", number);
+    const ImpostorAtlas& shown = atlases[number];
     const uint64_t newest = shown.written - 1;
     const bool own = key == shown.key;
     const uint32_t hash = core::hash32(key);
     const uint64_t late = own ? 0 : kMinLate + (hash >> 1) % (kMaxLate - kMinLate + 1);
     const uint64_t wanted = newest - std::min(newest, late);
     const bool mirror = !own && (hash & 1u) != 0;
-    const auto isThere = [&](uint32_t in, uint64_t page) {
-        return in != kNoAtlas && page < books[in].written &&
-               page + kAtlasFrames > books[in].written;
+    const auto isThere = [&](uint32_t in, uint64_t frame) {
+        return in != kNoAtlas && frame < atlases[in].written &&
+               frame + kAtlasFrames > atlases[in].written;
     };
-    const auto runOf = [&](uint64_t page) { return shown.pages[page % kAtlasFrames].run; };
-    const bool goesOn = book == number && mirrored == mirror && isThere(book, at) && wanted >= at &&
-                        wanted <= at + 2 && runOf(at) == runOf(wanted);
+    const auto runOf = [&](uint64_t frame) { return shown.frames[frame % kAtlasFrames].run; };
+    const bool goesOn = atlas == number && mirrored == mirror && isThere(atlas, at) &&
+                        wanted >= at && wanted <= at + 2 && runOf(at) == runOf(wanted);
     if (turned < kAtlasFrameStep) ++turned;
-    if (!goesOn && book != kNoAtlas) {
-        before = at, bookBefore = book, mirroredBefore = mirrored;
+    if (!goesOn && atlas != kNoAtlas) {
+        before = at, atlasBefore = atlas, mirroredBefore = mirrored;
         turned = 1;
     }
-    book = number, at = wanted, mirrored = mirror;
-    if (!isThere(bookBefore, before)) turned = kAtlasFrameStep;
+    atlas = number, at = wanted, mirrored = mirror;
+    if (!isThere(atlasBefore, before)) turned = kAtlasFrameStep;
 }
 
 void placeAtlasFrame(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-                     uint32_t slot, AtlasFrame& page, MarchedVolume& out) noexcept {
-    placeImpostor(view, item, screen, slot, page.card, out);
-    page.middle =
-        vec3(axesOf(item.draw, page.card.middle), glm::dot(page.card.middle, vec3(view.forward)));
-    page.tip = axesOf(item.draw, item.tip);
-    page.wide = item.draw.wide;
+                     uint32_t slot, AtlasFrame& frame, MarchedVolume& out) noexcept {
+    placeImpostor(view, item, screen, slot, frame.impostor, out);
+    frame.middle = vec3(axesOf(item.draw, frame.impostor.middle),
+                        glm::dot(frame.impostor.middle, vec3(view.forward)));
+    frame.tip = axesOf(item.draw, item.tip);
+    frame.wide = item.draw.wide;
 }
 
 bool showAtlasFrame(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-                    uint32_t slot, const AtlasFrame& page, bool mirrored,
+                    uint32_t slot, const AtlasFrame& frame, bool mirrored,
                     VolumeImpostor& out) noexcept {
-    // Across the view: what lies along the page's flame comes to lie along the item's, what lies
-    // across it across.
-    const float wider = item.draw.wide / page.wide, side = mirrored ? -wider : wider;
+    // Across the view: maps the axis of the frame's flame to the item's axis.
+    FW_ASSERT(frame.wide > 0.0f, "a frame %g m wide", double(frame.wide));
+    const float wider = item.draw.wide / frame.wide, side = mirrored ? -wider : wider;
     const vec2 tip = axesOf(item.draw, item.tip);
-    const vec2 from = page.tip, ours(mirrored ? -from.x : from.x, from.y);
+    const vec2 from = frame.tip, ours(mirrored ? -from.x : from.x, from.y);
     const float length = glm::length(ours), now = glm::length(tip);
     vec2 x(side, 0.0f), y(0.0f, wider);
     float deeper = wider;
-    if (length > kSeenAside * page.wide && now > kSeenAside * item.draw.wide) {
+    if (length > kSeenAside * frame.wide && now > kSeenAside * item.draw.wide) {
         const vec2 a = ours / length, b = tip / now;
         const float taller = now / length;
         deeper = taller;
@@ -185,19 +189,20 @@ bool showAtlasFrame(const ViewParams& view, const VolumeItem& item, const Volume
         };
         x = turn({mirrored ? -1.0f : 1.0f, 0.0f}), y = turn({0.0f, 1.0f});
     }
-    // As far from the eye as its middle is: seen from above that is nearer than where it stands,
-    // and a page in the distance of its foot would be too small.
-    const vec2 aside = page.middle.x * x + page.middle.y * y;
-    ImpostorShape stands = page.card;
+    // As far from the camera as its middle is: seen from above that is nearer than where it stands,
+    // and a frame in the distance of its foot would be too small.
+    const vec2 aside = frame.middle.x * x + frame.middle.y * y;
+    ImpostorShape stands = frame.impostor;
     stands.middle = aside.x * glm::normalize(vec3(item.draw.rayX)) +
                     aside.y * glm::normalize(vec3(item.draw.rayY)) +
-                    deeper * page.middle.z * vec3(view.forward);
+                    deeper * frame.middle.z * vec3(view.forward);
     if (!showImpostor(view, item, screen, slot, stands, out)) return false;
-    // showImpostor has cells as they lie in the page: by how much a metre is.
-    const vec2 perMetre = vec2(out.place.z, out.upY) / page.card.cell;
-    const vec2 middle = vec2(out.place) - page.card.low * perMetre;
-    const vec2 first = page.card.low.x * x + page.card.low.y * y;
-    const vec2 cellX = page.card.cell * x * perMetre, cellY = page.card.cell * y * perMetre;
+    // showImpostor has cells as they lie in the frame: by how much a metre is.
+    const vec2 perMetre = vec2(out.place.z, out.upY) / frame.impostor.cell;
+    const vec2 middle = vec2(out.place) - frame.impostor.low * perMetre;
+    const vec2 first = frame.impostor.low.x * x + frame.impostor.low.y * y;
+    const vec2 cellX = frame.impostor.cell * x * perMetre,
+               cellY = frame.impostor.cell * y * perMetre;
     out.place = vec4(middle + first * perMetre, cellX);
     out.upX = cellY.x, out.upY = cellY.y;
     out.perX = 2.0f / glm::length(screen.size * cellX);

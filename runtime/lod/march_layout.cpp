@@ -1,7 +1,8 @@
-// Volumetric flames of the frame's view before it is drawn: each ray once for a cell of a few
-// pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
-// volume_probe finds worth it. Memory is bounded: where not all fits, those that take most of it
-// are marched in larger cells.
+// The layout of a view's march: each ray covers a march pixel of a few pixels, or of a part of one
+// where the flame is small. Rays of a flame are kept in slabs, of the tiles that volume_probe finds
+// worth it. Memory is bounded: if not all fits, the flames that take most of it get larger march
+// pixels.
+#include "core/assert.h"
 #include "lod/tiers.h"
 #include "lod/volumes.h"
 
@@ -14,8 +15,8 @@ namespace {
 
 constexpr float kMaxCell = 64.0f;     // px
 constexpr uint32_t kMaxPerPixel = 8;  // cells a side: a tile
-// A flame is as wide as so many cells, or sheets and tongues fall between rays: its light would
-// depend on where cells lie.
+// A flame is at least so many march pixels wide. If sheets and tongues fell between rays, its light
+// would depend on where rays are.
 constexpr float kCellsAcross = 16.0f;
 constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples are as it says
 // Cells across one from which those around a cell are narrower than a quarter of a step: layers of
@@ -79,7 +80,7 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
 }
 
 // m between samples. Where sheets are closer than samples thick flame is too dark; a small one,
-// which costs little, gets up to twice as many, and so does one around the eye or near it.
+// which costs little, gets up to twice as many, and so does one around the camera or near it.
 float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const float wide = volumeWide(draw, screen);
     const float few = std::min(wide / kAllDetail, kNoLayers * cellOf(draw, screen) / wide);
@@ -87,27 +88,27 @@ float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
 }
 
 // Samples of a ray: of those with few steps as many as show the light of those with many.
-uint32_t maxU(const VolumeDraw& draw, const VolumeScreen& screen) {
+uint32_t maxSamples(const VolumeDraw& draw, const VolumeScreen& screen) {
     return std::min(uint32_t(kSamplesPerStep * float(draw.mostSteps)), screen.steps);
 }
 
 // Of a slab.
 uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const float spacing = spacingOf(draw, screen);
-    const uint32_t most = maxU(draw, screen) / draw.slabs;
+    const uint32_t most = maxSamples(draw, screen) / draw.slabs;
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
 
 // MarchPush::least: of those with few steps no more than three quarters of what they may take.
-uint32_t minU(const VolumeItem& item, const VolumeScreen& screen, float cells) {
+uint32_t minSamples(const VolumeItem& item, const VolumeScreen& screen, float cells) {
     float least = kMinSamples * std::clamp(kNoLayers / cells, 1.0f, kLeastInSmall);
     if (item.highQuality) least = std::max(least, std::min(kMinPerCell * cells, kMinSamplesHigh));
-    return std::min(uint32_t(least), 3 * maxU(item.draw, screen) / 4);
+    return std::min(uint32_t(least), 3 * maxSamples(item.draw, screen) / 4);
 }
 
 float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
 
-struct Laid {  // a part of the view for a flame
+struct Part {  // of the view, for a flame
     uint32_t item = 0;
     bool window = false;
     bool smoke = false;  // most of it
@@ -116,7 +117,7 @@ struct Laid {  // a part of the view for a flame
     Tiles tiles{};
     [[nodiscard]] uint64_t count() const { return uint64_t(tiles.x) * tiles.y; }
     // Cells of the part of the largest become larger first: of those with many tiles that of small
-    // cells, so that what is near does not show its cells before what is far. 0: they cannot.
+    // cells, so that near flames do not show their cells before far ones. 0: they cannot.
     [[nodiscard]] float weight() const {
         if (coarser(cell) > kMaxCell) return 0.0f;
         const auto n = float(count());
@@ -125,8 +126,8 @@ struct Laid {  // a part of the view for a flame
     }
 };
 
-// All flames' parts and cells, which together take no more than so many tiles: what small flames
-// need is little, and they alone would be lost in larger ones.
+// The parts of all flames, which together take no more than so many tiles. Small flames keep their
+// march pixels: they need few, and would be lost in larger ones.
 class Layout {
  public:
     Layout(std::span<const VolumeItem> items, const VolumeScreen& screen)
@@ -137,28 +138,29 @@ class Layout {
             add(uint32_t(i), false, items_[i].draw.rect, cellOf(items_[i].draw, screen_));
         if (all_ > room) yieldRoomOfSmoke();
         while (all_ > room) {
-            Laid& most = *std::max_element(
+            Part& most = *std::max_element(
                 parts_.begin(), parts_.begin() + ptrdiff_t(count_),
-                [](const Laid& a, const Laid& b) { return a.weight() < b.weight(); });
+                [](const Part& a, const Part& b) { return a.weight() < b.weight(); });
             if (most.weight() == 0.0f) return false;
-            lay(most, coarser(most.cell));
+            place(most, coarser(most.cell));
         }
         return true;
     }
-    [[nodiscard]] std::span<const Laid> parts() const { return {parts_.data(), count_}; }
+    [[nodiscard]] std::span<const Part> parts() const { return {parts_.data(), count_}; }
     [[nodiscard]] uint64_t tiles() const { return all_; }
 
  private:
-    void lay(Laid& part, float cell) {
+    void place(Part& part, float cell) {
         all_ -= part.count();
         part.cell = cell;
         part.tiles = tilesOf(part.rect, screen_.size, cell);
         all_ += part.count();
     }
     void add(uint32_t item, bool window, const vec4& rect, float cell) {
-        Laid& part = parts_[count_++];
+        FW_ASSERT(count_ < parts_.size(), "%zu parts", count_);
+        Part& part = parts_[count_++];
         part = {item, window, false, rect, cell, {}};
-        lay(part, cell);
+        place(part, cell);
     }
     void yieldRoomOfSmoke() {
         count_ = 0, all_ = 0;
@@ -167,20 +169,20 @@ class Layout {
             const float cell = cellOf(item.draw, screen_);
             add(uint32_t(i), false, item.draw.rect, cell);
             if (!item.smokes) continue;
-            Laid& whole = parts_[count_ - 1];
+            Part& whole = parts_[count_ - 1];
             const bool seen = item.burns.x < item.burns.z && item.burns.y < item.burns.w;
             const Tiles fire = tilesOf(item.burns, screen_.size, cell);
             // A window nearly as large as the flame would save nothing.
             if (seen && 3 * whole.count() < 4 * uint64_t(fire.x) * fire.y) continue;
             whole.smoke = true;
-            lay(whole, std::max(kSmokeCells * cell, 1.0f));
+            place(whole, std::max(kSmokeCells * cell, 1.0f));
             if (seen) add(uint32_t(i), true, item.burns, cell);
         }
     }
 
     std::span<const VolumeItem> items_;
     const VolumeScreen& screen_;
-    std::array<Laid, 2 * kMaxVolumeFlames> parts_;  // a flame's window behind the flame
+    std::array<Part, 2 * kMaxVolumeFlames> parts_;  // a flame's window behind the flame
     size_t count_ = 0;
     uint64_t all_ = 0;  // tiles
 };
@@ -196,7 +198,7 @@ void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept {
     const float cell = cellOf(draw, screen);
     draw.perPixel = cell <= 1.0f ? std::max(uint32_t(1.0f / cell), 2u) : 1;
     draw.spacing = spacingOf(draw, screen);
-    draw.mostSteps = maxU(draw, screen);
+    draw.mostSteps = maxSamples(draw, screen);
     if (draw.perPixel == 1) return;
     // Of a pixel that is flame in part slabs would show less light than it has.
     draw.deep *= float(draw.slabs);
@@ -219,17 +221,18 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
     Layout layout(items, screen);
     const uint64_t room = words > first ? (words - first) / wordsOfTile(screen.slabs) : 0;
     if (!layout.fit(room)) return {};
-    VolumeAllocation laid;
-    laid.end = first + uint32_t(layout.tiles() * kMarchTileWords);
-    uint32_t known = first, samples = laid.end;
-    for (const Laid& part : layout.parts()) {
+    VolumeAllocation placed;
+    placed.end = first + uint32_t(layout.tiles() * kMarchTileWords);
+    uint32_t known = first, samples = placed.end;
+    for (const Part& part : layout.parts()) {
         const VolumeItem& item = items[part.item];
         const VolumeDraw& draw = item.draw;
         const float cell = part.cell;
         const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
         const Tiles& tiles = part.tiles;
         const uint32_t count = tiles.x * tiles.y;
-        MarchedVolume& one = out[laid.count++];
+        FW_ASSERT(placed.count < out.size(), "%u of %zu flames", placed.count, out.size());
+        MarchedVolume& one = out[placed.count++];
         one.flame = item.flame;
         one.window = part.window;
         one.smokes = item.smokes;
@@ -253,7 +256,7 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
         // Flames of few cells are probed more closely, or rays go past them.
         const float wide = volumeWide(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
-        march.least = minU(item, screen, wide);
+        march.least = minSamples(item, screen, wide);
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         CompositePush& composite = one.composite;
         composite.place =
@@ -273,7 +276,7 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
         composite.window = vec4(0.0f);
         if (part.window) {
             // Of the whole flame's cells, which end where these begin.
-            CompositePush& whole = out[laid.count - 2].composite;
+            CompositePush& whole = out[placed.count - 2].composite;
             const vec2 low = vec2(composite.place), size(tiles.x, tiles.y);
             const vec2 high = low + perCell * float(kMarchTileSide) * size;
             const vec2 from(whole.place), per(whole.place.z, whole.place.w);
@@ -282,7 +285,8 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
         known += count * kMarchTileWords;
         samples += march.pixels * kMarchPixelWords * draw.slabs;
     }
-    return laid;
+    FW_ASSERT(samples <= words, "word %u of %u", samples, words);
+    return placed;
 }
 
 }  // namespace fw::lod

@@ -1,8 +1,10 @@
-// Volumetric flames of one view: a draw each, farthest first. Where the host's depth can be sampled
-// a ray ends there; where it can only be tested a flame is drawn in slabs, each tested at its
-// place, so that a log in a flame hides what is behind it and no more.
+// Volumetric flames of one view: their bounds on the screen, slabs and haze. If the host's depth
+// can be sampled, a ray ends there. If it can only be tested, a flame is drawn in slabs, each
+// tested at its place, so that a log in a flame hides only the part behind it.
+#include "core/assert.h"
 #include "lod/tiers.h"
 #include "lod/volumes.h"
+#include "shared/volume_haze.h"
 #include "shared/volume_march.h"
 
 #include <algorithm>
@@ -12,9 +14,9 @@ namespace fw::lod {
 namespace {
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
-constexpr float kMinW = 1e-4f;       // of clip space: what is nearer is beside the eye or behind it
-constexpr float kMinAway = 1e-4f;    // m: a plane that is nearer to the eye, or no more aslant
-constexpr float kBeyond = 4.0f;      // depth of no plane
+constexpr float kMinW = 1e-4f;  // of clip space: what is nearer is beside the camera or behind it
+constexpr float kMinAway = 1e-4f;  // m: a plane that is nearer to the camera, or no more aslant
+constexpr float kBeyond = 4.0f;    // depth of no plane
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.05f;
 
@@ -29,7 +31,7 @@ struct BoxShown {
     // x and y of the view, as if it had no edge; empty: nowhere.
     vec4 rect{1e30f, 1e30f, -1e30f, -1e30f};
     float near = 1e30f, far = -1e30f;  // m along the view
-    bool around = false;               // some of it is beside or behind the eye
+    bool around = false;               // some of it is beside or behind the camera
 };
 
 BoxShown showBox(const ViewParams& view, const vec3& low, const vec3& high) {
@@ -55,7 +57,7 @@ BoxShown showBox(const ViewParams& view, const vec3& low, const vec3& high) {
         else
             add(corners[i]);
     }
-    // Of what is in part behind the eye the view shows what its edges have before it.
+    // Of a box that is partly behind the camera, the view shows its edges before it.
     for (int i = 0; shown.around && i < 8; ++i) {
         if (!(corners[i].w > kMinW)) continue;
         for (int axis = 1; axis < 8; axis *= 2) {
@@ -93,6 +95,7 @@ vec4 volumeClip(const ViewParams& view) noexcept {
 
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out, vec4* whole) {
+    FW_ASSERT(slabs > 0);
     const bool perspective = view.forward.w > 0.5f;
     const vec3 forward(view.forward);
     const vec3 rows[4] = {vec3(view.clip0.x, view.clip1.x, view.clip2.x),
@@ -137,6 +140,7 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
 }
 
 vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t count) {
+    FW_ASSERT(count > 0);
     const vec3 normal(nodes[0].along);
     float lowest = 0.0f;  // m, of what shows
     for (uint32_t k = 1; k < count; ++k) {
@@ -171,8 +175,8 @@ void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noex
     }
 }
 
-// So many flames, those that cover most of the view, get all their samples; the others a few,
-// which changes their grain and not their light.
+// kMarchedFlames flames, those that cover most of the view, get all their samples. The others get a
+// few, which changes their grain and not their light.
 void chooseVolumes(std::span<VolumeItem> items) {
     if (items.size() <= kMarchedFlames) return;
     const auto covers = [](const VolumeItem& item) {
@@ -205,13 +209,14 @@ void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, Volu
     const float reach = glm::dot(glm::abs(forward), half), depth = glm::dot(forward, middle);
     const float least = view.forward.w > 0.5f ? kFirstSlab : -1e9f;
     const float near = std::max(depth - reach, least), far = depth + reach;
-    if (!(far > near)) return;  // beside or behind the eye: its smoke alone is seen
+    if (!(far > near)) return;  // beside or behind the camera: its smoke alone is seen
     out.front = near;
     out.deep = (far - near) / float(out.slabs);
 }
 
 uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
-    float bent = 0.0f;  // of neighbours' ways and radii, all together
+    FW_ASSERT(count > 0);
+    float bent = 0.0f;  // of neighbours' directions and radii, all together
     for (uint32_t k = 1; k < count; ++k) {
         const float radius = std::max(std::max(nodes[k].centre.w, nodes[k - 1].centre.w), 1e-6f);
         bent += glm::length(vec3(nodes[k].along) - vec3(nodes[k - 1].along)) +
@@ -219,6 +224,32 @@ uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
         if (nodes[k].squeeze.w > 0.0f) bent += 1.0f;
     }
     return std::clamp(2u + uint32_t(4.0f * std::min(bent, 100.0f)), 2u, kFlameIntervals);
+}
+
+void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
+                      vec4& high) {
+    const float top = kHazeTop * record.high.w;
+    vec3 least(1e30f), most(-1e30f);
+    const auto add = [&](vec3 centre, float s) {
+        const vec3 reach(kHazeReach * flamePlumeWide(record, s));
+        least = glm::min(least, centre - reach), most = glm::max(most, centre + reach);
+    };
+    for (uint32_t k = 0; k < count; ++k) {
+        const FlameNode& node = nodes[k];
+        add(vec3(node.centre), node.along.w);
+        if (node.along.w > top) break;
+        if (k + 1 == count)  // it goes straight on
+            add(vec3(node.centre) + (top - node.along.w) * vec3(node.along), top);
+    }
+    low = vec4(least, 0.0f), high = vec4(most, 0.0f);
+}
+
+bool makeHazePush(const ViewParams& view, const vec4& low, const vec4& high, float strength,
+                  HazePush& out) noexcept {
+    VolumeDraw draw{};
+    if (!(strength > 0.0f) || !volumeDraw(view, low, high, 1, draw)) return false;
+    out = {draw.rect, draw.rayX, draw.rayY, draw.rayO, draw.clip, strength, 0, 0, 0};
+    return true;
 }
 
 }  // namespace fw::lod

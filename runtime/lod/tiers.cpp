@@ -1,11 +1,13 @@
 #include "lod/tiers.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 
 namespace fw::lod {
 namespace {
 
-constexpr float kKeeps = 1.25f;  // as much larger counts what is marched already
+constexpr float kKeeps = 1.25f;  // a flame that is marched already counts as so many times as large
 
 bool marches(uint32_t tier) noexcept {
     return tier == FW_FIRE_TIER_MARCH_HIGH || tier == FW_FIRE_TIER_MARCH_LOW;
@@ -32,16 +34,18 @@ uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept {
     return at;
 }
 
-bool wantsAtlas(uint32_t asked, float wide, const TierLife& life) noexcept {
-    if (asked == FW_FIRE_TIER_SHARED_IMPOSTOR || life.shows(FW_FIRE_TIER_SHARED_IMPOSTOR))
+bool wantsAtlas(uint32_t requested, float wide, const TierLife& life) noexcept {
+    if (requested == FW_FIRE_TIER_SHARED_IMPOSTOR || life.shows(FW_FIRE_TIER_SHARED_IMPOSTOR))
         return true;
-    if (asked != FW_FIRE_TIER_AUTO || wide < kImpostorInside) return false;
+    if (requested != FW_FIRE_TIER_AUTO || wide < kImpostorInside) return false;
     return wide < kAtlasInside || life.tier == FW_FIRE_TIER_IMPOSTOR;
 }
 
-void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
+void chooseTiers(std::span<const TierItem> items, uint32_t impostors, const MarchLimits& limits,
                  TierLives& lives, std::span<uint32_t> places) noexcept {
-    // Those that stay first: a new one takes no place from them.
+    FW_ASSERT(items.size() <= kMaxVolumeFlames && places.size() >= items.size(), "%zu flames",
+              items.size());
+    // Flames that stay come first: a new one takes no place from them.
     for (const bool stays : {true, false}) {
         for (size_t i = 0; i < items.size(); ++i) {
             if (!stays && places[i] < kMaxVolumeFlames) continue;
@@ -69,31 +73,31 @@ void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLim
     std::sort(order.begin(), order.begin() + count, [&](uint32_t a, uint32_t b) {
         return weight[a] != weight[b] ? weight[a] > weight[b] : items[a].key < items[b].key;
     });
-    uint32_t rank = 0;  // among those that are too large for a card
+    uint32_t rank = 0;  // among those that are too large for an impostor
     for (uint32_t k = 0; k < count; ++k) {
         const TierItem& item = items[order[k]];
         const uint32_t place = places[order[k]];
         TierLife& life = lives[place];
         const float border =
             life.tier == FW_FIRE_TIER_IMPOSTOR ? kImpostorOutside : kImpostorInside;
-        uint32_t tier = item.asked;
+        uint32_t tier = item.requested;
         uint32_t steps = kHighSteps;
         if (tier == FW_FIRE_TIER_AUTO) {
             const bool hadAtlas = life.tier == FW_FIRE_TIER_SHARED_IMPOSTOR;
-            const bool book = item.booked && (item.shared || hadAtlas);
+            const bool atlas = item.hasAtlas && (item.shared || hadAtlas);
             if (item.wide < border) {
                 tier = FW_FIRE_TIER_IMPOSTOR;
             } else if (rank >= limits.all) {
-                tier = book ? FW_FIRE_TIER_SHARED_IMPOSTOR : FW_FIRE_TIER_IMPOSTOR;
-            } else if (book && item.wide < (hadAtlas ? kAtlasOutside : kAtlasInside)) {
+                tier = atlas ? FW_FIRE_TIER_SHARED_IMPOSTOR : FW_FIRE_TIER_IMPOSTOR;
+            } else if (atlas && item.wide < (hadAtlas ? kAtlasOutside : kAtlasInside)) {
                 tier = FW_FIRE_TIER_SHARED_IMPOSTOR;
             } else {
                 tier = rank < limits.high ? FW_FIRE_TIER_MARCH_HIGH : FW_FIRE_TIER_MARCH_LOW;
                 ++rank;
             }
         }
-        if (tier == FW_FIRE_TIER_SHARED_IMPOSTOR && !item.booked) tier = FW_FIRE_TIER_IMPOSTOR;
-        if (tier == FW_FIRE_TIER_IMPOSTOR && place >= cards) tier = FW_FIRE_TIER_MARCH_LOW;
+        if (tier == FW_FIRE_TIER_SHARED_IMPOSTOR && !item.hasAtlas) tier = FW_FIRE_TIER_IMPOSTOR;
+        if (tier == FW_FIRE_TIER_IMPOSTOR && place >= impostors) tier = FW_FIRE_TIER_MARCH_LOW;
         if (tier == FW_FIRE_TIER_MARCH_LOW) steps = kLowSteps;
         if (life.tier == 0) {
             life.tier = life.before = tier;

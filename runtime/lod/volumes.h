@@ -1,5 +1,5 @@
-// How a view shows its volumetric flames: where they are on the screen, and as what each is drawn.
-// tiers.h chooses between a march, an impostor and a billboard.
+// Where a view shows its volumetric flames on the screen, and how the passes draw each. tiers.h
+// chooses between a march and an impostor.
 #pragma once
 #include "shared/look.h"
 #include "shared/volume_draw.h"
@@ -20,12 +20,12 @@ using namespace gpu;  // what shaders share
 struct VolumeItem {  // a volumetric flame that a view may show
     uint32_t flame = 0;
     VolumeDraw draw{};
-    vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
+    vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the camera
     vec3 middle{}, base{};    // m, world: of its bounds; where it stands
     vec3 tip{};               // m, from there to where its mean height ends
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
     bool smokes = false;
-    bool highQuality = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
+    bool highQuality = false;  // FW_FIRE_TIER_MARCH_HIGH was requested for
     vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
 };
 // Whether some of a sphere is between the planes of the view's four sides. `middle`: m, from the
@@ -39,9 +39,9 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
 vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t count);
 // VolumeDraw::base of such a plane, of a draw that volumeDraw made: that has none.
 void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noexcept;
-// VolumeDraw::clip: what tells how far something is from its depth.
+// VolumeDraw::clip, which turns depth into distance.
 vec4 volumeClip(const ViewParams& view) noexcept;
-// How many samples each of them is worth where all are marched as they are drawn.
+// Divides samples among flames that are marched as they are drawn.
 void chooseVolumes(std::span<VolumeItem> items);
 // VolumeDraw::intervals for a curve.
 uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
@@ -59,9 +59,9 @@ struct MarchedVolume {  // one whose rays are marched before the drawing, and ho
     MarchPush march{};
     CompositePush composite{};
 };
-// Of VolumeWork per flame: it, its card, where it burns, its book's page.
+// Of VolumeWork per flame: it, its impostor, where it burns, its atlas's frame.
 constexpr uint32_t kVolumeWorks = 4;
-struct VolumeScreen {     // what the marched view is shown on
+struct VolumeScreen {     // on which a marched view is shown
     vec2 size{};          // px
     uint32_t slabs = 1;   // of a flame
     uint32_t cell = 2;    // px, at least
@@ -76,11 +76,10 @@ uint32_t volumeRayWords(const VolumeScreen& screen);
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
 // Rays and samples of a flame that is marched as it is drawn: as many as if it were before.
 void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
-// Cells of all `items`, as fine as `words` allow, where those of most tiles get larger ones, in
-// their order, behind the `first` words, which are others'; `perPixel`: m per pixel at a depth
-// of 1. Where room is short smoke, thin and wide, makes way for fire: a flame that smokes gets
-// large cells, and behind it in `out` fine ones where it burns. So `out` needs room for twice as
-// many.
+// Allocates march pixels for all `items`, in their order, behind the first `first` words. They are
+// as fine as `words` allow; flames of most tiles get larger ones first. `perPixel`: m per pixel at
+// a depth of 1. If memory is short, smoke yields to fire: a flame that smokes gets large march
+// pixels, and behind it in `out` fine ones where it burns. So `out` has capacity for twice as many.
 struct VolumeAllocation {
     uint32_t end = 0;    // of the words that are known of tiles; 0: they do not fit
     uint32_t count = 0;  // of `out`
@@ -89,12 +88,12 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
                                  float perPixel, uint32_t words, std::span<MarchedVolume> out,
                                  uint32_t first = 0);
 
-struct ImpostorShape {  // what is in a card's words
+struct ImpostorShape {  // the content of an impostor's words
     bool there = false;
     uint32_t key = 0;    // whose
     uint64_t frame = 0;  // that marched it
     vec3 middle{};       // m, from where the flame stands
-    vec3 direction{};    // unit, from the eye
+    vec3 direction{};    // unit, from the camera
     vec2 low{};          // m across the view, from the middle: of its first cell
     float cell = 0;      // m
     uint32_t tilesX = 0, tilesY = 0, encoding = 0;
@@ -106,14 +105,14 @@ struct ImpostorPair {
     uint32_t over = 1;    // frames from when it was marched until it shows alone
 };
 bool impostorFits(const VolumeItem& item) noexcept;
-// How the card in `slot`, a half of a pair, is marched, from where it is seen now.
+// How the impostor in `slot`, a half of a pair, is marched, from where it is seen now.
 void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-                   uint32_t slot, ImpostorShape& card, MarchedVolume& out) noexcept;
-// False: it is behind the eye.
+                   uint32_t slot, ImpostorShape& impostor, MarchedVolume& out) noexcept;
+// False: it is behind the camera.
 bool showImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-                  uint32_t slot, const ImpostorShape& card, VolumeImpostor& out) noexcept;
+                  uint32_t slot, const ImpostorShape& impostor, VolumeImpostor& out) noexcept;
 
-struct HazedVolume {  // one whose heat bends what is seen behind it
+struct HazedVolume {  // one whose heat distorts the picture behind it
     uint32_t flame = 0;
     float away = 0;  // m along the view
     HazePush draw{};

@@ -137,10 +137,10 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
         part = life.part();
     }
     // A requested tier is used; without room for its billboard the flame is marched.
-    items[0].asked = FW_FIRE_TIER_MARCH_LOW;
+    items[0].requested = FW_FIRE_TIER_MARCH_LOW;
     for (int k = 0; k < 40; ++k) frame();
     EXPECT_EQ(lod::kLowSteps, lives[places[0]].steps);
-    items[0].asked = FW_FIRE_TIER_IMPOSTOR;
+    items[0].requested = FW_FIRE_TIER_IMPOSTOR;
     for (int k = 0; k < 40; ++k) lod::chooseTiers(items, 0, {}, lives, places);
     EXPECT_TRUE(lives[places[0]].marched());
 }
@@ -191,9 +191,9 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kAtlasOutside + 1));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kImpostorOutside + 1));
     // A flame that requests an impostor gets it, or a billboard.
-    items[0].asked = FW_FIRE_TIER_SHARED_IMPOSTOR;
+    items[0].requested = FW_FIRE_TIER_SHARED_IMPOSTOR;
     EXPECT_EQ(FW_FIRE_TIER_SHARED_IMPOSTOR, settle(100));
-    items[0].booked = false;
+    items[0].hasAtlas = false;
     EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(100));
 }
 
@@ -216,7 +216,7 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     const auto frame = [&] {
         lod::chooseAtlases(items, had, 2, *books, out);
         for (lod::ImpostorAtlas& book : *books)
-            if (book.used) book.pages[book.written++ % lod::kAtlasFrames].run = book.run;
+            if (book.used) book.frames[book.written++ % lod::kAtlasFrames].run = book.run;
         for (uint32_t i = 0; i < items.size(); ++i) {
             if (out[i] == lod::kNoAtlas) continue;
             readers[i].read(out[i], *books);

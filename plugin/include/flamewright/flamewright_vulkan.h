@@ -227,7 +227,7 @@ static inline FwVulkanComposite fwDefaultVulkanComposite(void) {
 }
 /* Draws in a pass of the library over host images: primary buffer, outside any pass. Records the barriers from `...Before` to
  * its use and to `...After`. An extent of 0 records nothing. Without FW_COMPOSITE_KEEP each call creates a framebuffer, which
- * is freed when its frame has finished: at most 8 calls a frame. With it nothing is created after warm-up: 16 framebuffers are
+ * is freed when its frame has finished. With it nothing is created after warm-up: 16 framebuffers are
  * kept. The library then remembers the views until the target is unregistered or a call on it comes without the flag. Do one
  * of these before you destroy views, for example on a resize. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordComposite(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,

@@ -1,5 +1,6 @@
-// What the drawing passes need from the looks' side, and what they get to record with.
+// Inputs of the draw passes: where appearance comes from, and the items that a view draws.
 #pragma once
+#include "core/assert.h"
 #include "flamewright/flamewright.h"
 #include "gpu/passes/pass.h"
 #include "lod/volumes.h"
@@ -104,19 +105,12 @@ void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
                         const HeatMaterial& heat, float edge, uint32_t places, bool doused,
                         bool warmed);
-// For a viewport that begins at `left`, `top` of the host's image.
-HalfPush halfPush(const ViewParams& view, int left, int top, uint32_t width, uint32_t height);
-
 struct FieldItem {      // a particle field that a view may show
     uint32_t draw = 0;  // its record
     draw::Number pass{};
     uint32_t vertices = 0;
     float depth = 0;  // m
 };
-// False: the view does not show it.
-bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out);
-void sortFields(std::span<FieldItem> items) noexcept;  // farthest first
-
 // Volumetric flames of all kinds as a view draws them, farthest first: runs of neighbours that one
 // pass draws, each run behind the last one of its pass.
 struct VolumeRun {
@@ -128,10 +122,12 @@ struct VolumeOrder {
     uint32_t count = 0;
     // The next flame is `index` of its pass.
     void add(draw::Number pass, uint32_t index) noexcept {
-        if (count > 0 && runs[count - 1].pass == pass)
+        if (count > 0 && runs[count - 1].pass == pass) {
             ++runs[count - 1].count;
-        else
-            runs[count++] = {pass, index, 1};
+            return;
+        }
+        FW_ASSERT(count < runs.size(), "%u runs", count);
+        runs[count++] = {pass, index, 1};
     }
 };
 

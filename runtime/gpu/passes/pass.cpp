@@ -22,19 +22,40 @@ constexpr ComputePass kComputePasses[] = {
 #undef FW_COMPUTE_PASS
 };
 
-constexpr const char* kCompositeTexelShaders[] = {"volume_composite_texels.frag",
-                                                  "volume_composite_texels_soft.frag",
-                                                  "volume_composite_texels_soft_ms.frag"};
-constexpr const char* kImpostorTexelShaders[] = {"volume_impostor_texels.frag",
-                                                 "volume_impostor_texels_soft.frag",
-                                                 "volume_impostor_texels_soft_ms.frag"};
+// The fragment shaders of a soft pass: without the host's depth, against it, and against one of
+// several samples.
+#define FW_SOFT_SHADERS(name) \
+    { name ".frag", name "_soft.frag", name "_soft_ms.frag" }
+constexpr const char* kCompositeTexelShaders[] = FW_SOFT_SHADERS("volume_composite_texels");
+constexpr const char* kImpostorTexelShaders[] = FW_SOFT_SHADERS("volume_impostor_texels");
+
+struct SoftShaders {
+    const char* fragment;
+    const char* soft;
+    const char* multisampled;
+};
+// A pass that blends effects, drawn at half resolution where the target asks for it.
+constexpr DrawPass softPass(const char* name, const char* vertex, SoftShaders shaders,
+                            uint32_t pushBytes = 0, Textures textures1 = Textures::none,
+                            Textures textures2 = Textures::looks) {
+    return {.name = name,
+            .vertexShader = vertex,
+            .fragmentShader = shaders.fragment,
+            .pushBytes = pushBytes,
+            .softShader = shaders.soft,
+            .softShaderMultisampled = shaders.multisampled,
+            .atHalf = AtHalf::soft,
+            .textures1 = textures1,
+            .textures2 = textures2};
+}
+#define FW_SOFT_PASS(name, ...) softPass(name, name ".vert", FW_SOFT_SHADERS(name), __VA_ARGS__)
 
 // Surface pipelines, in the order in which they draw within a phase.
 constexpr auto kSurfaceKeys = [] {
     using F = MaterialFamily;
     std::array<SurfaceKey, kSurfacePassCount> rows{};
     size_t count = 0;
-    // All is drawn in two goes, so that the depth test drops the inside, which only holes show.
+    // Front faces first: the depth test then drops the inside, which only holes show.
     const auto addFresh = [&](SurfaceState state, Cull cull) {
         for (const F family : {F::wood, F::plant, F::paint, F::hide})
             rows[count++] = {family, false, state, cull};
@@ -89,17 +110,12 @@ constexpr DrawPass surfaceOf(const SurfaceKey& row) {
 }
 
 constexpr DrawPass flipbookFlames(bool only) {
-    return {.name = "flipbook_flames",
-            .vertexShader = "flipbook_flames.vert",
-            .fragmentShader = "flipbook_flames.frag",
-            .variant = only ? 1u : 0u,
-            .softShader = "flipbook_flames_soft.frag",
-            .softShaderMultisampled = "flipbook_flames_soft_ms.frag",
-            .atHalf = AtHalf::soft,
-            .textures1 = Textures::flipbooks};
+    DrawPass pass = FW_SOFT_PASS("flipbook_flames", 0, Textures::flipbooks);
+    pass.variant = only ? 1 : 0;
+    return pass;
 }
 
-// The sparks alone of `pass`, over what was drawn at half resolution.
+// The sparks of `pass` alone, over the effects of half resolution.
 constexpr DrawPass halfSparks(DrawPass pass) {
     pass.name = "half_sparks";
     pass.fragmentShader = nullptr;
@@ -109,14 +125,9 @@ constexpr DrawPass halfSparks(DrawPass pass) {
 
 // Fields that emit alone, that absorb and that refract differ, so that none pays for another.
 constexpr DrawPass field(uint32_t variant) {
-    return {.name = "field_draw",
-            .vertexShader = "field_draw.vert",
-            .fragmentShader = "field_draw.frag",
-            .variant = variant,
-            .softShader = "field_draw_soft.frag",
-            .softShaderMultisampled = "field_draw_soft_ms.frag",
-            .atHalf = AtHalf::soft,
-            .textures1 = Textures::profiles};
+    DrawPass pass = FW_SOFT_PASS("field_draw", 0, Textures::profiles);
+    pass.variant = variant;
+    return pass;
 }
 
 constexpr DrawPass intoHalf(const char* name, const char* shader, const char* multisampled) {
@@ -132,38 +143,15 @@ constexpr DrawPass intoHalf(const char* name, const char* shader, const char* mu
 
 constexpr auto kDrawPasses = [] {
     std::array<DrawPass, kDrawPassCount> passes{};
-    passes[draw::flames] = {.name = "flames",
-                            .vertexShader = "flames.vert",
-                            .fragmentShader = "flames.frag",
-                            .softShader = "flames_soft.frag",
-                            .softShaderMultisampled = "flames_soft_ms.frag",
-                            .atHalf = AtHalf::soft};
+    passes[draw::flames] = FW_SOFT_PASS("flames", 0);
     passes[draw::flipbook_flames] = flipbookFlames(false);
     passes[draw::flipbook_flames_only] = flipbookFlames(true);
-    passes[draw::volume] = {.name = "volume",
-                            .vertexShader = "volume.vert",
-                            .fragmentShader = "volume.frag",
-                            .pushBytes = sizeof(VolumeDraw),
-                            .softShader = "volume_soft.frag",
-                            .softShaderMultisampled = "volume_soft_ms.frag",
-                            .atHalf = AtHalf::soft,
-                            .textures2 = Textures::profiles};
-    passes[draw::volume_impostor] = {.name = "volume_impostor",
-                                     .vertexShader = "volume_impostor.vert",
-                                     .fragmentShader = "volume_impostor.frag",
-                                     .pushBytes = sizeof(VolumeImpostor),
-                                     .softShader = "volume_impostor_soft.frag",
-                                     .softShaderMultisampled = "volume_impostor_soft_ms.frag",
-                                     .texelShaders = kImpostorTexelShaders,
-                                     .atHalf = AtHalf::soft};
-    passes[draw::volume_composite] = {.name = "volume_composite",
-                                      .vertexShader = "volume_composite.vert",
-                                      .fragmentShader = "volume_composite.frag",
-                                      .pushBytes = sizeof(CompositePush),
-                                      .softShader = "volume_composite_soft.frag",
-                                      .softShaderMultisampled = "volume_composite_soft_ms.frag",
-                                      .texelShaders = kCompositeTexelShaders,
-                                      .atHalf = AtHalf::soft};
+    passes[draw::volume] =
+        FW_SOFT_PASS("volume", sizeof(VolumeDraw), Textures::none, Textures::profiles);
+    passes[draw::volume_impostor] = FW_SOFT_PASS("volume_impostor", sizeof(VolumeImpostor));
+    passes[draw::volume_impostor].texelShaders = kImpostorTexelShaders;
+    passes[draw::volume_composite] = FW_SOFT_PASS("volume_composite", sizeof(CompositePush));
+    passes[draw::volume_composite].texelShaders = kCompositeTexelShaders;
     passes[draw::volume_haze] = {.name = "volume_haze",
                                  .vertexShader = "volume_haze.vert",
                                  .fragmentShader = nullptr,
@@ -247,6 +235,7 @@ uint32_t surfacePass(const SurfaceKey& key) noexcept {
         if (drawn.family == MaterialFamily::sheet) drawn.family = MaterialFamily::hide;
     }
     const auto row = std::find(kSurfaceKeys.begin(), kSurfaceKeys.end(), drawn);
+    FW_ASSERT(row != kSurfaceKeys.end(), "no pass draws family %d", int(drawn.family));
     return draw::count + uint32_t(row - kSurfaceKeys.begin());
 }
 

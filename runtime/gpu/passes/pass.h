@@ -1,6 +1,6 @@
 // Types of passes and of the buffers that they use. A pass is a row of a table: passes.inl
 // (compute) or draw_passes.cpp (draws). Layouts, barriers, timers and labels follow from the row
-// and from what its shaders declare.
+// and from its shaders' declarations.
 #pragma once
 #include "shared/burn.h"
 #include "shared/deform.h"
@@ -119,7 +119,7 @@ enum class Textures : uint8_t {
     none,
     ofItem,     // sampler2D: an object's base colour, white if it has none
     flipbooks,  // sampler2D
-    hostColor,  // sampler2D: the host's copy of what its target holds
+    hostColor,  // sampler2D: the host's copy of its target
     looks,      // sampler2DArray: the look textures
     profiles,   // sampler2DArray: the fire profiles
     halfColor,  // sampler2D
@@ -141,7 +141,7 @@ struct DrawPass {
     uint32_t variant = 0;
     Cull cull = Cull::none;
     bool strict = false;  // nothing where something stands as near
-    bool behind = false;  // its depth is a hair farther, so that what is strict passes it
+    bool behind = false;  // its depth is slightly farther, so that strict passes draw over it
     // Instead of fragmentShader where the target samples depth; null: not drawn there.
     const char* softShader = nullptr;
     const char* softShaderMultisampled = nullptr;

@@ -1,5 +1,6 @@
 #include "gpu/passes/shader_interface.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 #include "embedded_shaders.h"
 #include "gpu/extension.h"
@@ -11,7 +12,7 @@
 namespace fw::gpu {
 namespace {
 
-// SPIR-V 1.0: opcodes and decorations that tell what a module binds.
+// SPIR-V 1.0: opcodes and decorations that name a module's bindings.
 enum Op : uint32_t {
     kOpTypeStruct = 30,
     kOpTypePointer = 32,
@@ -41,6 +42,7 @@ void ShaderInterface::add(std::span<const uint32_t> words, std::pmr::memory_reso
     std::pmr::vector<Id> ids(words[kBoundWord], memory);
     for (size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
         const uint32_t* const word = &words[at];
+        FW_ASSERT(*word >> 16 > 0 && at + (*word >> 16) <= words.size(), "word %zu", at);
         switch (*word & 0xFFFFu) {
             case kOpDecorate: {
                 Id& id = ids[word[1]];

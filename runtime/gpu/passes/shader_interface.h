@@ -9,7 +9,7 @@ namespace fw::gpu {
 // The bindings of a shader, or of several that share a pipeline layout.
 class ShaderInterface {
  public:
-    // Adds what the module `words` declares. Throws std::bad_alloc; FW_ERROR_INTERNAL if the
+    // Adds the declarations of the module `words`. Throws std::bad_alloc; FW_ERROR_INTERNAL if the
     // shaders together bind more than kMost.
     void add(std::span<const uint32_t> words, std::pmr::memory_resource* memory);
 

@@ -1,5 +1,6 @@
-// Burnable meshes as they look now, one draw per object and material. Pipelines differ in what they
-// can draw, not in how it looks: see kSurface... in shared/look.h.
+// Surfaces of burnable meshes, one draw per object and material. Pipelines differ in the features
+// that they can draw, not in the result: see kSurface... in shared/look.h.
+#include "core/assert.h"
 #include "gpu/extension.h"
 
 #include <algorithm>
@@ -81,7 +82,7 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     const bool heated = (object.flags & kObjectHeat) != 0;
     draw.heatBase = object.heatBase;
     draw.maxFilm = heated ? float(heat.maxFilm) : 0.0f;
-    // What is thin and never doused is as hot as its age says.
+    // A thin object that was never doused is as hot as its age says.
     if (heated && (doused || (heat.flags & kHeatThick))) draw.flags |= kDrawHeat;
     if (heated && (heat.flags & kHeatThick)) draw.flags |= kDrawThick;
     if (doused || (heated && warmed)) draw.flags |= kDrawWet;
@@ -89,6 +90,8 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
 }
 
 void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep>& out) noexcept {
+    FW_ASSERT(out.capacity() >= items.size() * kMostSurfaceSteps, "%zu of %zu draws", items.size(),
+              out.capacity());
     out.clear();
     for (uint32_t i = 0; i < items.size(); ++i) {
         const DrawItem& item = items[i];

@@ -1,5 +1,5 @@
-// What a VkBackend holds: the device's parts, the tables of the scene, and the renderers, each with
-// its buffers, dirty flags and recording. Internal to the backend's .cpp files.
+// The state of a VkBackend: the device's parts, the tables of the scene, and the renderers, each
+// with its buffers, dirty flags and recording. Internal to the backend's .cpp files.
 #pragma once
 #include "gpu/vk/field_renderer.h"
 #include "gpu/vk/flame_renderer.h"

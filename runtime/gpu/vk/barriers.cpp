@@ -40,7 +40,7 @@ constexpr VkAccessFlags kOurWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRAN
 
 void record(const Table& table, VkCommandBuffer commands, VkPipelineStageFlags srcStages,
             VkAccessFlags srcAccess, VkPipelineStageFlags dstStages, VkAccessFlags dstAccess) {
-    auto barrier = typed<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    Typed<VkMemoryBarrier> barrier;
     barrier.srcAccessMask = srcAccess;
     barrier.dstAccessMask = dstAccess;
     table.CmdPipelineBarrier(commands, srcStages, dstStages, 0, 1, &barrier, 0, nullptr, 0,
@@ -82,7 +82,7 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
             state = {scope.stages, scope.access & kOurWrites, 0, 0, 0};
         } else {
             state.readStages |= scope.stages;
-            // What was not visible had its write among this barrier's sources.
+            // A write that was not visible is among this barrier's sources.
             const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
                               (state.visibleAccess & scope.access) == scope.access;
             if (state.writeStages && !seen) {

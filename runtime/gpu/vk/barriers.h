@@ -1,5 +1,5 @@
-// Turns what passes say they use into pipeline barriers: one global memory barrier before a pass
-// that needs one. Vulkan 1.0 stages and accesses only. Knows nothing of images.
+// Turns the accesses that passes declare into pipeline barriers: one global memory barrier before a
+// pass that needs one. Vulkan 1.0 stages and accesses only. Knows nothing of images.
 #pragma once
 #include "gpu/passes/pass.h"
 #include "gpu/vk/table.h"

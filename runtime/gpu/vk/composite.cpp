@@ -1,5 +1,5 @@
-// What a host draws our effects with: its own pass, or a composite over its images; the sets and
-// framebuffers of its images.
+// The draws in the host's own pass, or as a composite over the host's images; sets and framebuffers
+// of these images.
 #include "core/error.h"
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/device_objects.h"
@@ -65,7 +65,7 @@ VkDescriptorSet hostSetFor(BackendState& s, FrameInFlight& slot, VkImageView vie
     return set;
 }
 
-// What the target's passes read of the images that the host gives; throws where that cannot be.
+// Sets of the host's images that the target's passes read. Throws where a frame has too many.
 HostImages hostImagesFor(BackendState& s, FrameInFlight& slot, const Target& target,
                          const FwVulkanFrame& frame, VkImageView depth, VkImageLayout depthLayout) {
     HostImages host;
@@ -75,15 +75,13 @@ HostImages hostImagesFor(BackendState& s, FrameInFlight& slot, const Target& tar
     return host;
 }
 
-// Of targets that are gone, and of `forget`; those that the device may still use go later.
+// Of targets that are gone, and of `forget`; the device may still use them.
 void dropFramebuffers(BackendState& s, FwTargetId forget) noexcept {
     for (KeptFramebuffer& one : s.targets.framebuffers) {
-        if (!one.handle) continue;
         const bool forgotten =
             one.target.index1 == forget.index1 && one.target.generation == forget.generation;
-        one.dropped |= forgotten || !s.context.pipelines.isTarget(one.target);
-        if (!one.dropped || one.lastFrame > s.ring.completed()) continue;
-        s.device.destroy(s.device.table.DestroyFramebuffer, one.handle);
+        if (!one.handle || (!forgotten && s.context.pipelines.isTarget(one.target))) continue;
+        s.retired.push(one.lastFrame, {.framebuffer = one.handle});
         one = {};
     }
 }
@@ -98,7 +96,7 @@ VkFramebuffer framebufferFor(BackendState& s, FrameInFlight& slot, const Target&
     KeptFramebuffer* room = nullptr;
     if (!keep) dropFramebuffers(s, targetId);
     for (KeptFramebuffer& one : kept) {
-        if (!keep || one.dropped || one.target.index1 != targetId.index1 ||
+        if (!keep || one.target.index1 != targetId.index1 ||
             one.target.generation != targetId.generation || one.color != attachments[0] ||
             one.depth != attachments[1] || one.width != composite.width ||
             one.height != composite.height)
@@ -112,18 +110,15 @@ VkFramebuffer framebufferFor(BackendState& s, FrameInFlight& slot, const Target&
                                        [](const KeptFramebuffer& one) { return !one.handle; });
         if (free != kept.end()) room = &*free;
     }
-    // More than are kept come and go with their frame.
-    if (!room && slot.framebufferCount == slot.framebuffers.size())
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has more than %zu composites.",
-                   slot.framebuffers.size());
+    s.retired.promise(1);
     const VkFramebuffer framebuffer =
         makeFramebuffer(s.device, target.ownPass, std::span(attachments).first(hasDepth ? 2 : 1),
                         composite.width, composite.height);
     if (room)
-        *room = {framebuffer,     targetId,         attachments[0],  attachments[1],
-                 composite.width, composite.height, slot.frameIndex, false};
-    else
-        slot.framebuffers[slot.framebufferCount++] = framebuffer;
+        *room = {framebuffer,     targetId,         attachments[0], attachments[1],
+                 composite.width, composite.height, slot.frameIndex};
+    else  // more than are kept come and go with their frame
+        s.retired.push(slot.frameIndex, {.framebuffer = framebuffer});
     return framebuffer;
 }
 
@@ -205,10 +200,10 @@ struct CompositeBarriers {
         }
     }
     void recordIn(const Table& vk, VkCommandBuffer commands) const noexcept {
-        vk.CmdPipelineBarrier(commands, before, ours, 0, 0, nullptr, 0, nullptr, count, in.data());
+        recordBarriers(vk, commands, before, ours, std::span(in).first(count));
     }
     void recordOut(const Table& vk, VkCommandBuffer commands) const noexcept {
-        vk.CmdPipelineBarrier(commands, ours, after, 0, 0, nullptr, 0, nullptr, count, out.data());
+        recordBarriers(vk, commands, ours, after, std::span(out).first(count));
     }
 
  private:
@@ -233,12 +228,6 @@ struct CompositeBarriers {
 };
 
 }  // namespace
-
-void destroyFramebuffers(BackendState& s) noexcept {
-    for (KeptFramebuffer& one : s.targets.framebuffers)
-        s.device.destroy(s.device.table.DestroyFramebuffer, one.handle);
-    s.targets.framebuffers = {};
-}
 
 bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, const FwView& view,
                              const VkViewport& viewport) {
@@ -296,11 +285,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     barriers.recordIn(vk, commands);
     const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
     if (target.key.half) host.half = recordHalf(s, slot, commands, target, view, viewport, host);
-    auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
-    begin.renderPass = target.ownPass;
-    begin.framebuffer = framebuffer;
-    begin.renderArea.extent = {images.width, images.height};
-    vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    beginPass(vk, commands, target.ownPass, framebuffer, {images.width, images.height}, {});
     recordDraws(s, slot, commands, target, view, viewport, host,
                 target.key.half ? DrawPart::over : DrawPart::all);
     vk.CmdEndRenderPass(commands);

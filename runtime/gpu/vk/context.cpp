@@ -1,6 +1,7 @@
-// A host's device and what its worlds share: memory, pipelines, targets.
+// A host's device and the parts that its worlds share: memory, pipelines, targets.
 #include "gpu/vk/backend_state.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace fw::gpu::vk {
@@ -31,50 +32,50 @@ bool Context::targetReady(FwTargetId id, FwPipelineProgress& progress) {
 void Context::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->deviceMemory.rows(out); }
 
 FwOutputEncoding Context::encodingOf(VkFormat color) noexcept {
-    switch (color) {
-        case VK_FORMAT_R16_SFLOAT:
-        case VK_FORMAT_R16G16_SFLOAT:
-        case VK_FORMAT_R16G16B16_SFLOAT:
-        case VK_FORMAT_R16G16B16A16_SFLOAT:
-        case VK_FORMAT_R32_SFLOAT:
-        case VK_FORMAT_R32G32_SFLOAT:
-        case VK_FORMAT_R32G32B32_SFLOAT:
-        case VK_FORMAT_R32G32B32A32_SFLOAT:
-        case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
-            return FW_OUTPUT_LINEAR;
-        case VK_FORMAT_R8_SRGB:
-        case VK_FORMAT_R8G8_SRGB:
-        case VK_FORMAT_R8G8B8_SRGB:
-        case VK_FORMAT_B8G8R8_SRGB:
-        case VK_FORMAT_R8G8B8A8_SRGB:
-        case VK_FORMAT_B8G8R8A8_SRGB:
-        case VK_FORMAT_A8B8G8R8_SRGB_PACK32:
-            return FW_OUTPUT_SRGB_VIEW;
-        case VK_FORMAT_R4G4_UNORM_PACK8:
-        case VK_FORMAT_R4G4B4A4_UNORM_PACK16:
-        case VK_FORMAT_B4G4R4A4_UNORM_PACK16:
-        case VK_FORMAT_R5G6B5_UNORM_PACK16:
-        case VK_FORMAT_B5G6R5_UNORM_PACK16:
-        case VK_FORMAT_R5G5B5A1_UNORM_PACK16:
-        case VK_FORMAT_B5G5R5A1_UNORM_PACK16:
-        case VK_FORMAT_A1R5G5B5_UNORM_PACK16:
-        case VK_FORMAT_R8_UNORM:
-        case VK_FORMAT_R8G8_UNORM:
-        case VK_FORMAT_R8G8B8_UNORM:
-        case VK_FORMAT_B8G8R8_UNORM:
-        case VK_FORMAT_R8G8B8A8_UNORM:
-        case VK_FORMAT_B8G8R8A8_UNORM:
-        case VK_FORMAT_A8B8G8R8_UNORM_PACK32:
-        case VK_FORMAT_A2R10G10B10_UNORM_PACK32:
-        case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
-        case VK_FORMAT_R16_UNORM:
-        case VK_FORMAT_R16G16_UNORM:
-        case VK_FORMAT_R16G16B16_UNORM:
-        case VK_FORMAT_R16G16B16A16_UNORM:
-            return FW_OUTPUT_DISPLAY_UNORM;
-        default:
-            return FW_OUTPUT_AUTO;
-    }
+    static constexpr VkFormat kLinear[] = {VK_FORMAT_R16_SFLOAT,
+                                           VK_FORMAT_R16G16_SFLOAT,
+                                           VK_FORMAT_R16G16B16_SFLOAT,
+                                           VK_FORMAT_R16G16B16A16_SFLOAT,
+                                           VK_FORMAT_R32_SFLOAT,
+                                           VK_FORMAT_R32G32_SFLOAT,
+                                           VK_FORMAT_R32G32B32_SFLOAT,
+                                           VK_FORMAT_R32G32B32A32_SFLOAT,
+                                           VK_FORMAT_B10G11R11_UFLOAT_PACK32};
+    static constexpr VkFormat kSrgb[] = {VK_FORMAT_R8_SRGB,
+                                         VK_FORMAT_R8G8_SRGB,
+                                         VK_FORMAT_R8G8B8_SRGB,
+                                         VK_FORMAT_B8G8R8_SRGB,
+                                         VK_FORMAT_R8G8B8A8_SRGB,
+                                         VK_FORMAT_B8G8R8A8_SRGB,
+                                         VK_FORMAT_A8B8G8R8_SRGB_PACK32};
+    static constexpr VkFormat kDisplay[] = {VK_FORMAT_R4G4_UNORM_PACK8,
+                                            VK_FORMAT_R4G4B4A4_UNORM_PACK16,
+                                            VK_FORMAT_B4G4R4A4_UNORM_PACK16,
+                                            VK_FORMAT_R5G6B5_UNORM_PACK16,
+                                            VK_FORMAT_B5G6R5_UNORM_PACK16,
+                                            VK_FORMAT_R5G5B5A1_UNORM_PACK16,
+                                            VK_FORMAT_B5G5R5A1_UNORM_PACK16,
+                                            VK_FORMAT_A1R5G5B5_UNORM_PACK16,
+                                            VK_FORMAT_R8_UNORM,
+                                            VK_FORMAT_R8G8_UNORM,
+                                            VK_FORMAT_R8G8B8_UNORM,
+                                            VK_FORMAT_B8G8R8_UNORM,
+                                            VK_FORMAT_R8G8B8A8_UNORM,
+                                            VK_FORMAT_B8G8R8A8_UNORM,
+                                            VK_FORMAT_A8B8G8R8_UNORM_PACK32,
+                                            VK_FORMAT_A2R10G10B10_UNORM_PACK32,
+                                            VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                                            VK_FORMAT_R16_UNORM,
+                                            VK_FORMAT_R16G16_UNORM,
+                                            VK_FORMAT_R16G16B16_UNORM,
+                                            VK_FORMAT_R16G16B16A16_UNORM};
+    const auto isOf = [&](std::span<const VkFormat> formats) {
+        return std::find(formats.begin(), formats.end(), color) != formats.end();
+    };
+    return isOf(kLinear)    ? FW_OUTPUT_LINEAR
+           : isOf(kSrgb)    ? FW_OUTPUT_SRGB_VIEW
+           : isOf(kDisplay) ? FW_OUTPUT_DISPLAY_UNORM
+                            : FW_OUTPUT_AUTO;
 }
 
 void Context::fillInfo(FwContextInfo& info) const noexcept {

@@ -21,8 +21,8 @@ constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swi
 
 uint32_t deformGroups(uint32_t items) noexcept { return (items + kDeformGroup - 1) / kDeformGroup; }
 
-// Does it still move, as far as is known? What burns does, until the last texel that caught has
-// burnt out.
+// Does it still move, as far as is known? A burning object does, until the last texel that caught
+// has burnt out.
 bool deforms(const BackendState& s, uint32_t slot, uint64_t now) noexcept {
     const ObjectEntry& object = s.scene.objects[slot];
     if (!object.live || !object.shown || object.deforms.skinPlus1) return false;
@@ -40,7 +40,7 @@ bool deforms(const BackendState& s, uint32_t slot, uint64_t now) noexcept {
     return now <= last + object.deforms.ticks;
 }
 
-// A host's vertex buffer into our buffer, and from there to what is drawn.
+// Copies a host's vertex buffer into ours, and from there to the drawn vertices.
 void recordGiven(BackendState& s, FrameRecorder& recorder, const ObjectEntry& object,
                  const Skin& skin) {
     const Table& vk = s.device.table;
@@ -48,7 +48,7 @@ void recordGiven(BackendState& s, FrameRecorder& recorder, const ObjectEntry& ob
     const uint64_t bytes = uint64_t(skin.words.units()) * 4;
     const uint64_t last = from.normalOffset ? uint64_t(from.normalOffset) + 12 : 12;
     const uint64_t used = uint64_t(from.vertexCount - 1) * from.stride + last;
-    auto barrier = typed<VkBufferMemoryBarrier>(VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER);
+    Typed<VkBufferMemoryBarrier> barrier;
     barrier.srcAccessMask = from.accessBefore;
     barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;

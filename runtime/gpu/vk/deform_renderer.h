@@ -17,7 +17,7 @@ struct DeformUse {      // an object's deformation
     bool now = false;         // it deforms in this frame
     bool woke = false;        // it did not move in the frame before
     bool softOdd = false;     // its places are the second ones
-    uint32_t recedeTurn = 0;  // which groups of a sheet learn next what has burnt
+    uint32_t recedeTurn = 0;  // groups of a sheet that next take over burnt texels
     uint32_t ticks = 0;       // that something moves after the last texel caught
     uint64_t softUntil = 0;   // tick until which it is not yet at rest
     uint32_t skinPlus1 = 0;   // of a skinned object: its Skin
@@ -28,7 +28,7 @@ struct Skin {
     std::pmr::vector<ShownVertex> shown;  // by drawn vertex, in the device's order; empty: free
     std::pmr::vector<uint32_t> sources;   // the host's vertex of each
     bool dirty = false, normals = false;  // normals: the host's; else they follow the triangles
-    // Instead of `shown`, what a buffer of the host's holds: copied by the next frame.
+    // In place of `shown`: a buffer of the host's, which the next frame copies.
     FwVulkanVertices given{};
     float metersPerUnit = 1;  // of its positions
     bool givenDue = false;
@@ -45,13 +45,13 @@ struct DeformRenderer {
     explicit DeformRenderer(std::pmr::memory_resource* pmr) : skins(pmr) {}
     // Particles with a solver step at a rate of their own, up to `ticks` (with a fraction).
     void advance(double ticks) noexcept;
-    // What object `slot` needs to deform or to be skinned in this frame; marks if it does.
+    // Adds the needs of object `slot` to deform or to be skinned in this frame; marks if it does.
     void addNeeds(BackendState& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs) const;
     // Vertices as hosts have moved them.
     void recordSkins(BackendState& s, FrameRecorder& recorder);
-    // What deforms in this frame.
+    // Everything that deforms in this frame.
     void record(BackendState& s, const FrameNeeds& needs, FrameRecorder& recorder);
-    // The one that the host moves an object with, which has one.
+    // The skin of an object that has one.
     [[nodiscard]] Skin& skinOf(const ObjectEntry& object) noexcept;
 
     std::pmr::vector<Skin> skins;

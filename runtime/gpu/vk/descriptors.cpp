@@ -52,6 +52,7 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const World
         const DescriptorSlot slot = descriptorSlot(use);
         const bool texels = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
         const Buffer& buffer = buffers.buffer(resourceOf(use.resource, of));
+        FW_ASSERT(buffer.handle || use.resource == FW_BIND_VIEW, "resource %u", use.resource);
         infos[count] = use.resource == FW_BIND_VIEW
                            ? VkDescriptorBufferInfo{views, 0, viewBytes}
                            : VkDescriptorBufferInfo{

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 namespace fw::gpu::vk {
 namespace {
@@ -23,16 +24,10 @@ bool declared(const char* const* names, uint32_t count, const char* wanted) noex
 
 // Larger is better; a software device last.
 int rank(VkPhysicalDeviceType type) noexcept {
-    switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-            return 4;
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-            return 3;
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-            return 2;
-        default:
-            return 1;
-    }
+    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU     ? 4
+           : type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 3
+           : type == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU    ? 2
+                                                            : 1;
 }
 
 constexpr VkQueueFlags kQueueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
@@ -58,12 +53,13 @@ Device::Device(const FwVulkanHost* host, const core::Log& log) : log_(log) {
 Device::~Device() { close(); }
 
 void Device::adoptHost(const FwVulkanHost& host) {
-    if (!host.getInstanceProcAddr)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::getInstanceProcAddr is null.");
-    if (!host.instance) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::instance is null.");
-    if (!host.physicalDevice)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::physicalDevice is null.");
-    if (!host.device) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::device is null.");
+    const std::pair<const char*, bool> handles[] = {
+        {"getInstanceProcAddr", host.getInstanceProcAddr != nullptr},
+        {"instance", host.instance != VK_NULL_HANDLE},
+        {"physicalDevice", host.physicalDevice != VK_NULL_HANDLE},
+        {"device", host.device != VK_NULL_HANDLE}};
+    for (const auto& [field, given] : handles)
+        if (!given) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::%s is null.", field);
     if (host.enabledExtensionCount && !host.enabledExtensions)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanHost::enabledExtensions is null but enabledExtensionCount is %u.",
@@ -108,10 +104,10 @@ void Device::make() {
     if (!createInstance)
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE, "libvulkan.so.1 offers no vkCreateInstance.");
 
-    auto application = typed<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
+    Typed<VkApplicationInfo> application;
     application.pEngineName = "Flamewright";
     application.apiVersion = VK_API_VERSION_1_0;
-    auto instanceInfo = typed<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+    Typed<VkInstanceCreateInfo> instanceInfo;
     instanceInfo.pApplicationInfo = &application;
     vk::check(createInstance(&instanceInfo, nullptr, &instance), "vkCreateInstance");
     table.loadInstance(get, instance);
@@ -143,11 +139,11 @@ void Device::make() {
                    count);
 
     const float priority = 1.0f;
-    auto queueInfo = typed<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    Typed<VkDeviceQueueCreateInfo> queueInfo;
     queueInfo.queueFamilyIndex = queueFamily;
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    auto deviceInfo = typed<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+    Typed<VkDeviceCreateInfo> deviceInfo;
     deviceInfo.queueCreateInfoCount = 1;
     deviceInfo.pQueueCreateInfos = &queueInfo;
     vk::check(table.CreateDevice(physicalDevice, &deviceInfo, nullptr, &handle), "vkCreateDevice");
@@ -227,8 +223,7 @@ void Device::failIfLost() const {
 
 void Device::name(VkObjectType type, uint64_t object, const char* text) const noexcept {
     if (!debugUtils || !table.SetDebugUtilsObjectNameEXT) return;
-    auto info =
-        typed<VkDebugUtilsObjectNameInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
+    Typed<VkDebugUtilsObjectNameInfoEXT> info;
     info.objectType = type;
     info.objectHandle = object;
     info.pObjectName = text;

@@ -1,4 +1,4 @@
-// The device, the host's or our own: its handles, limits and what was declared. Not its memory.
+// The device, the host's or our own: its handles, limits and declared features. Not its memory.
 #pragma once
 #include "core/log.h"
 #include "flamewright/flamewright_vulkan.h"
@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory_resource>
 #include <mutex>
+#include <type_traits>
 
 namespace fw::gpu::vk {
 
@@ -45,7 +46,7 @@ class Device {
     template <class Info, class Handle>
     Handle create(VkResult(VKAPI_PTR* creates)(VkDevice, const Info*, const VkAllocationCallbacks*,
                                                Handle*),
-                  const Info& info, const char* what) {
+                  const std::type_identity_t<Info>& info, const char* what) {
         Handle made{};
         check(creates(handle, &info, allocationCallbacks, &made), what);
         return made;

@@ -14,7 +14,7 @@ bool hasStencil(VkFormat format) noexcept {
 VkImageCreateInfo imageInfo(VkFormat format, uint32_t width, uint32_t height,
                             VkImageUsageFlags usage) noexcept {
     FW_ASSERT(width > 0 && height > 0, "%u x %u pixels", width, height);
-    auto info = typed<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    Typed<VkImageCreateInfo> info;
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = format;
     info.extent = {width, height, 1};
@@ -27,11 +27,31 @@ VkImageCreateInfo imageInfo(VkFormat format, uint32_t width, uint32_t height,
 }
 
 VkImageMemoryBarrier imageBarrier(VkImage image, VkImageAspectFlags aspect) noexcept {
-    auto barrier = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+    Typed<VkImageMemoryBarrier> barrier;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image;
     barrier.subresourceRange = {aspect, 0, 1, 0, 1};
     return barrier;
+}
+
+void recordBarriers(const Table& vk, VkCommandBuffer commands, VkPipelineStageFlags before,
+                    VkPipelineStageFlags after,
+                    std::span<const VkImageMemoryBarrier> barriers) noexcept {
+    vk.CmdPipelineBarrier(commands, before, after, 0, 0, nullptr, 0, nullptr,
+                          uint32_t(barriers.size()), barriers.data());
+}
+
+void beginPass(const Table& vk, VkCommandBuffer commands, VkRenderPass pass,
+               VkFramebuffer framebuffer, VkExtent2D extent,
+               std::span<const VkClearValue> clears) noexcept {
+    FW_ASSERT(pass && framebuffer);
+    Typed<VkRenderPassBeginInfo> begin;
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea.extent = extent;
+    begin.clearValueCount = uint32_t(clears.size());
+    begin.pClearValues = clears.data();
+    vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
 }
 
 VkRenderPass makeRenderPass(Device& device, std::span<const AttachmentUse> attachments,
@@ -57,7 +77,7 @@ VkRenderPass makeRenderPass(Device& device, std::span<const AttachmentUse> attac
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &color;
     if (attachments.size() > 1) subpass.pDepthStencilAttachment = &depth;
-    auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
+    Typed<VkRenderPassCreateInfo> info;
     info.attachmentCount = uint32_t(attachments.size());
     info.pAttachments = images.data();
     info.subpassCount = 1;
@@ -70,7 +90,7 @@ VkRenderPass makeRenderPass(Device& device, std::span<const AttachmentUse> attac
 VkFramebuffer makeFramebuffer(Device& device, VkRenderPass pass,
                               std::span<const VkImageView> attachments, uint32_t width,
                               uint32_t height) {
-    auto info = typed<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
+    Typed<VkFramebufferCreateInfo> info;
     info.renderPass = pass;
     info.attachmentCount = uint32_t(attachments.size());
     info.pAttachments = attachments.data();
@@ -84,14 +104,13 @@ VkDescriptorPool makeSets(Device& device, std::span<const VkDescriptorPoolSize> 
                           std::span<const VkDescriptorSetLayout> layouts,
                           std::span<VkDescriptorSet> sets) {
     FW_ASSERT(layouts.size() == sets.size(), "%zu layouts, %zu sets", layouts.size(), sets.size());
-    auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    Typed<VkDescriptorPoolCreateInfo> info;
     info.maxSets = uint32_t(layouts.size());
     info.poolSizeCount = uint32_t(sizes.size());
     info.pPoolSizes = sizes.data();
     VkDescriptorPool pool =
         device.create(device.table.CreateDescriptorPool, info, "vkCreateDescriptorPool");
-    auto allocate =
-        typed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    Typed<VkDescriptorSetAllocateInfo> allocate;
     allocate.descriptorPool = pool;
     allocate.descriptorSetCount = uint32_t(layouts.size());
     allocate.pSetLayouts = layouts.data();
@@ -107,7 +126,7 @@ VkDescriptorPool makeSets(Device& device, std::span<const VkDescriptorPoolSize> 
 void writeImageSet(const Device& device, VkDescriptorSet set, VkSampler sampler, VkImageView view,
                    VkImageLayout layout) noexcept {
     const VkDescriptorImageInfo image{sampler, view, layout};
-    auto write = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+    Typed<VkWriteDescriptorSet> write;
     write.dstSet = set;
     write.descriptorCount = 1;
     write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;

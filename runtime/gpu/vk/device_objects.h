@@ -15,6 +15,11 @@ namespace fw::gpu::vk {
 // A barrier of mip 0 and layer 0, without accesses and layouts.
 [[nodiscard]] VkImageMemoryBarrier imageBarrier(VkImage image, VkImageAspectFlags aspect) noexcept;
 
+// Between `before` and `after`, for images alone.
+void recordBarriers(const Table& vk, VkCommandBuffer commands, VkPipelineStageFlags before,
+                    VkPipelineStageFlags after,
+                    std::span<const VkImageMemoryBarrier> barriers) noexcept;
+
 // How a pass finds and leaves an attachment. `stencil`: its stencil is loaded and stored, too.
 struct AttachmentUse {
     VkFormat format = VK_FORMAT_UNDEFINED;
@@ -32,6 +37,10 @@ struct AttachmentUse {
 [[nodiscard]] VkFramebuffer makeFramebuffer(Device& device, VkRenderPass pass,
                                             std::span<const VkImageView> attachments,
                                             uint32_t width, uint32_t height);
+
+void beginPass(const Table& vk, VkCommandBuffer commands, VkRenderPass pass,
+               VkFramebuffer framebuffer, VkExtent2D extent,
+               std::span<const VkClearValue> clears) noexcept;
 
 // A pool with one set of each layout; `sets` receives them.
 [[nodiscard]] VkDescriptorPool makeSets(Device& device, std::span<const VkDescriptorPoolSize> sizes,

@@ -1,7 +1,9 @@
 #include "gpu/vk/field_renderer.h"
 
+#include "gpu/passes/blend_order.h"
 #include "gpu/passes/field_units.h"
 #include "gpu/vk/frame_needs.h"
+#include "shared/field_draw.h"
 
 #include <cstring>
 
@@ -20,6 +22,19 @@ void stageMasks(BackendState& s, const BufferRange& cells, std::span<const uint8
             .region(FW_BIND_FIELD_MASKS, uint64_t(cells.first()) * kFieldUnit, bytes);
     std::memset(to, 0, bytes);
     std::memcpy(to, masks.data(), masks.size_bytes());
+}
+
+// False: the view does not show it.
+bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out) {
+    const vec3 middle = vec3(field.place) + 0.5f * field.size.y * vec3(field.up) - vec3(view.eye);
+    const float radius = 0.75f * glm::length(vec3(field.size));
+    out.depth = glm::dot(middle, vec3(view.forward));
+    out.pass = field.up.w <= 0.0f   ? draw::field_emitting
+               : field.up.w <= 1.0f ? draw::field_absorbing
+                                    : draw::field_refracting;
+    out.vertices = field.shape == kFieldBillboard ? 6 : 6 * kFieldAround * kFieldUp;
+    if (view.forward.w > 0.5f && out.depth < -radius) return false;
+    return sphereInView(view, middle, radius);
 }
 
 }  // namespace
@@ -61,7 +76,7 @@ void VkBackend::setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) {
 }
 
 uint64_t VkBackend::fieldBytes(uint32_t slot) const noexcept {
-    constexpr uint64_t kOfACell = 2 * 4 + 1 + 4;  // twice, its mask, what it shows
+    constexpr uint64_t kOfACell = 2 * 4 + 1 + 4;  // two states, its mask, its shown value
     return uint64_t(state_->particleFields.fields[slot].cells.units()) * kFieldUnit * kOfACell +
            sizeof(FieldDraw) + sizeof(FieldRecord) + sizeof(FieldCounters);
 }
@@ -121,7 +136,7 @@ void FieldRenderer::record(const FramePlan& plan, FrameRecorder& recorder) {
     }
     fieldsDirty = false;
     recordFields(recorder, frame);
-    if (plan.frameIndex == 0) return;  // a picture of what is there
+    if (plan.frameIndex == 0) return;  // a picture of the present state
     fieldDraws.clear();                // makeRoom reserved for them
     for (size_t i = 0; plan.fields && i < plan.fields->drawn.size(); ++i) {
         const FieldEntry& field = fields[plan.fields->drawn[i]];
@@ -146,7 +161,9 @@ uint32_t FieldRenderer::order(const BackendState& s,
         out[count].draw = i;
         if (fieldDrawn(s.seen, fieldDraws[i], out[count])) ++count;
     }
-    sortFields({out.data(), count});
+    orderOnHost(
+        std::span(out.data(), count), [](const FieldItem& item) { return item.depth; },
+        [](const FieldItem& item) { return item.draw; });
     return count;
 }
 

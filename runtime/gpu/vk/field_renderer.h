@@ -21,7 +21,7 @@ struct FieldRenderer {
     explicit FieldRenderer(std::pmr::memory_resource* pmr) : fields(pmr), fieldDraws(pmr) {}
     void addNeeds(const FramePlan& plan, FrameNeeds& needs) const;
     void record(const FramePlan& plan, FrameRecorder& recorder);
-    // What the view that was last pushed shows of them, farthest first; how many.
+    // The fields that the view that was last pushed shows, farthest first; returns their number.
     uint32_t order(const BackendState& s, std::array<FieldItem, kMaxFields>& out) const noexcept;
 
     std::pmr::vector<FieldEntry> fields;

@@ -49,7 +49,7 @@ uint32_t rayWords(const BackendState& s, const March& march) noexcept {
     return uint32_t(double(s.detail.memory) * volumeRayWords(march.screen));
 }
 
-// One frame's march for one view: chooses as what each flame is shown, and places it in the words.
+// One frame's march for one view: chooses the tier of each flame, and places it in the words.
 class MarchFrame {
  public:
     MarchFrame(const BackendState& s, OutsideView& of, std::span<const VolumeItem> items)
@@ -78,8 +78,9 @@ class MarchFrame {
     // Shows the impostor in `slot` as pixels [from, to), if the view has it.
     template <class Show>
     void addImpostor(float from, float to, const Show& show) noexcept {
-        FW_ASSERT(march_.impostorCount < march_.cards.size(), "%u impostors", march_.impostorCount);
-        VolumeImpostor& impostor = march_.cards[march_.impostorCount];
+        FW_ASSERT(march_.impostorCount < march_.impostors.size(), "%u impostors",
+                  march_.impostorCount);
+        VolumeImpostor& impostor = march_.impostors[march_.impostorCount];
         if (!(from < to) || !show(impostor)) return;
         impostor.from = from, impostor.to = to;
         march_.order.add(draw::volume_impostor, march_.impostorCount++);
@@ -99,7 +100,7 @@ class MarchFrame {
     uint32_t slots_ = 0, atlases_ = 0;  // pairs and atlases that there is space for
     uint32_t first_ = 0;                // word behind those
     VolumeAllocation marched_;          // of march_.items, and behind them
-    uint32_t cards_ = 0;                // impostors
+    uint32_t impostors_ = 0;            // impostors
     std::array<uint32_t, kMaxVolumeFlames> places_, numbers_;  // by item: its life, its atlas
 };
 
@@ -115,9 +116,9 @@ MarchRecord MarchFrame::run() noexcept {
     march_.view = view_;
     march_.count = marched_.count;
     march_.there = true;
-    FW_ASSERT(marched_.count + cards_ <= march_.items.size(), "%u marches",
-              marched_.count + cards_);
-    return {{march_.items.data(), marched_.count + cards_}, first_, marched_.end, cards_};
+    FW_ASSERT(marched_.count + impostors_ <= march_.items.size(), "%u marches",
+              marched_.count + impostors_);
+    return {{march_.items.data(), marched_.count + impostors_}, first_, marched_.end, impostors_};
 }
 
 // Pairs of impostors, atlases, rays, in this order. Where memory is short there are none of the
@@ -134,7 +135,7 @@ void MarchFrame::divideWords() noexcept {
         --atlases_;
     if (capacity_ != march_.capacity || march_.impostorSlot != 2 * slots_ ||
         march_.screen.encoding != march_.atlasEncoding)
-        for (ImpostorAtlas& atlas : march_.books) atlas.used = false, atlas.written = 0;
+        for (ImpostorAtlas& atlas : march_.atlases) atlas.used = false, atlas.written = 0;
     march_.capacity = capacity_;
     march_.impostorSlot = 2 * slots_;
     march_.atlasEncoding = march_.screen.encoding;
@@ -144,15 +145,15 @@ void MarchFrame::divideWords() noexcept {
 
 // Which of the atlases each item may show.
 void MarchFrame::assignAtlases() noexcept {
-    std::array<AtlasItem, kMaxVolumeFlames> asked;
+    std::array<AtlasItem, kMaxVolumeFlames> requested;
     std::array<uint32_t, kMaxVolumeFlames> had;
     bool wanted = false;
     for (size_t i = 0; i < items_.size(); ++i) {
         const VolumeBox& box = boxOf(i);
         const uint32_t at = lifeOf(box.key, march_.lives);
         const TierLife* life = at < kMaxVolumeFlames ? &march_.lives[at] : nullptr;
-        had[i] = life && march_.readers[at].key == box.key ? march_.readers[at].book : kNoAtlas;
-        AtlasItem& one = asked[i];
+        had[i] = life && march_.cursors[at].key == box.key ? march_.cursors[at].atlas : kNoAtlas;
+        AtlasItem& one = requested[i];
         one.kind = box.kind;
         one.kind.facing =
             glm::dot(glm::normalize(box.tip), glm::normalize(items_[i].middle - vec3(seen_.eye)));
@@ -164,12 +165,12 @@ void MarchFrame::assignAtlases() noexcept {
                                          life ? *life : TierLife{});
         wanted = wanted || (one.wants && one.fits);
     }
-    chooseAtlases({asked.data(), items_.size()}, {had.data(), items_.size()}, atlases_,
-                  march_.books, std::span(numbers_).first(items_.size()));
+    chooseAtlases({requested.data(), items_.size()}, {had.data(), items_.size()}, atlases_,
+                  march_.atlases, std::span(numbers_).first(items_.size()));
     // More where flames that want one have none: all are placed again, so not one by one.
     bool without = false;
     for (size_t i = 0; i < items_.size(); ++i)
-        without = without || (asked[i].wants && asked[i].fits && numbers_[i] == kNoAtlas);
+        without = without || (requested[i].wants && requested[i].fits && numbers_[i] == kNoAtlas);
     if (without && atlases_ == march_.atlasCapacity)
         march_.atlasCapacity = std::clamp(2 * atlases_, 1u, kMaxImpostorAtlases);
     march_.atlasIdleFrames = wanted ? 0 : std::min(march_.atlasIdleFrames + 1, kAtlasFrames);
@@ -179,26 +180,27 @@ void MarchFrame::assignAtlases() noexcept {
 }
 
 void MarchFrame::chooseTiers() noexcept {
-    std::array<TierItem, kMaxVolumeFlames> asked;
+    std::array<TierItem, kMaxVolumeFlames> requested;
     for (size_t i = 0; i < items_.size(); ++i) {
         const VolumeBox& box = boxOf(i);
-        const ImpostorAtlas* atlas = numbers_[i] == kNoAtlas ? nullptr : &march_.books[numbers_[i]];
+        const ImpostorAtlas* atlas =
+            numbers_[i] == kNoAtlas ? nullptr : &march_.atlases[numbers_[i]];
         // Its newest frame is this one.
         const bool ready = atlas && (atlas->key == box.key || atlas->written + 1 >= kAtlasFrames);
-        asked[i] = {box.key,           box.tier, volumeWide(items_[i].draw, march_.screen),
+        requested[i] = {box.key,           box.tier, volumeWide(items_[i].draw, march_.screen),
                     areaOf(items_[i]), ready,    atlas && atlas->shares > 1};
         const bool extended = box.tier == core::reserved::kFireTier;
         if (extended && !extension()->showsVolumes(march_.screen.encoding))
-            asked[i].asked = FW_FIRE_TIER_MARCH_LOW;
+            requested[i].requested = FW_FIRE_TIER_MARCH_LOW;
         else if (!extended && !impostorFits(items_[i]))
-            asked[i].asked = FW_FIRE_TIER_MARCH_HIGH;  // around the camera
+            requested[i].requested = FW_FIRE_TIER_MARCH_HIGH;  // around the camera
     }
-    lod::chooseTiers({asked.data(), items_.size()}, slots_,
+    lod::chooseTiers({requested.data(), items_.size()}, slots_,
                      {s_.detail.marchedHigh, s_.detail.marched}, march_.lives, places_);
     // A place may have gone to another flame.
     for (size_t i = 0; i < march_.pairs.size(); ++i) {
         const TierLife& life = march_.lives[i];
-        if (!life.used || march_.readers[i].key != life.key) march_.readers[i] = {};
+        if (!life.used || march_.cursors[i].key != life.key) march_.cursors[i] = {};
         for (ImpostorShape& shape : march_.pairs[i].shapes)
             shape.there = shape.there && life.used && shape.key == life.key &&
                           shape.encoding == march_.screen.encoding &&
@@ -244,15 +246,15 @@ bool MarchFrame::placeMarched() noexcept {
 // The next frame of each atlas: the flame that it follows, as it is now.
 void MarchFrame::placeAtlasFrames() noexcept {
     for (uint32_t b = 0; b < kMaxImpostorAtlases; ++b) {
-        ImpostorAtlas& atlas = march_.books[b];
+        ImpostorAtlas& atlas = march_.atlases[b];
         if (!atlas.used) continue;
         for (size_t i = 0; i < items_.size(); ++i) {
             if (boxOf(i).key != atlas.key || numbers_[i] != b) continue;
             const auto at = uint32_t(atlas.written % kAtlasFrames);
-            MarchedVolume& one = march_.items[marched_.count + cards_++];
+            MarchedVolume& one = march_.items[marched_.count + impostors_++];
             placeAtlasFrame(seen_, items_[i], march_.screen,
-                            march_.impostorSlot + b * kAtlasFrames + at, atlas.pages[at], one);
-            atlas.pages[at].run = atlas.run;
+                            march_.impostorSlot + b * kAtlasFrames + at, atlas.frames[at], one);
+            atlas.frames[at].run = atlas.run;
             one.march.flame = 3 * uint32_t(volumes_.size()) + one.flame;
             ++atlas.written;
             break;
@@ -262,7 +264,7 @@ void MarchFrame::placeAtlasFrames() noexcept {
 
 // Flames that have none, and of the others the oldest.
 void MarchFrame::placeImpostors() noexcept {
-    const uint32_t perFrame = kMaxImpostorsPerFrame - cards_;
+    const uint32_t perFrame = kMaxImpostorsPerFrame - impostors_;
     std::array<uint32_t, kMaxVolumeFlames> due;
     uint32_t dues = 0;
     for (uint32_t i = 0; i < items_.size(); ++i)
@@ -281,7 +283,7 @@ void MarchFrame::placeImpostors() noexcept {
     for (uint32_t k = 0; k < dues; ++k) {
         const uint32_t i = due[k];
         if (k >= perFrame && age(i) != ~uint64_t{0}) break;
-        MarchedVolume& one = march_.items[marched_.count + cards_++];
+        MarchedVolume& one = march_.items[marched_.count + impostors_++];
         ImpostorPair& pair = march_.pairs[places_[i]];
         if (pair.shapes[pair.newest].there) pair.newest ^= 1u;
         pair.over = (dues + perFrame - 1) / perFrame;
@@ -309,7 +311,7 @@ void MarchFrame::order() noexcept {
         if (life.shows(FW_FIRE_TIER_SHARED_IMPOSTOR))
             showAtlas(items_[i], places_[i], numbers_[i]);
         else
-            march_.readers[places_[i]] = {};
+            march_.cursors[places_[i]] = {};
         if (life.shows(FW_FIRE_TIER_IMPOSTOR)) showPair(items_[i], places_[i]);
     }
 }
@@ -334,26 +336,26 @@ void MarchFrame::showPair(const VolumeItem& item, uint32_t place) noexcept {
 }
 
 void MarchFrame::showAtlas(const VolumeItem& item, uint32_t place, uint32_t number) noexcept {
-    AtlasCursor& reader = march_.readers[place];
+    AtlasCursor& cursor = march_.cursors[place];
     const TierLife& life = march_.lives[place];
-    reader.key = life.key;
-    if (number == kNoAtlas) number = reader.book;  // it is like none any more, and turns
+    cursor.key = life.key;
+    if (number == kNoAtlas) number = cursor.atlas;  // it is like none any more, and turns
     if (number == kNoAtlas) return;
-    if (march_.books[number].used) reader.read(number, march_.books);
-    if (reader.at >= march_.books[reader.book].written) return;  // its space is another's
+    if (march_.atlases[number].used) cursor.read(number, march_.atlases);
+    if (cursor.at >= march_.atlases[cursor.atlas].written) return;  // its space is another's
     float from = 0.0f, to = 1.0f;
     setFade(life, life.tier == FW_FIRE_TIER_SHARED_IMPOSTOR, from, to);
-    const float border = from + float(reader.turned) / float(kAtlasFrameStep) * (to - from);
+    const float border = from + float(cursor.turned) / float(kAtlasFrameStep) * (to - from);
     const auto show = [&](uint32_t atlas, uint64_t at, bool mirrored, float first, float last) {
         const auto frame = uint32_t(at % kAtlasFrames);
         addImpostor(first, last, [&](VolumeImpostor& out) {
             return showAtlasFrame(seen_, item, march_.screen,
                                   march_.impostorSlot + atlas * kAtlasFrames + frame,
-                                  march_.books[atlas].pages[frame], mirrored, out);
+                                  march_.atlases[atlas].frames[frame], mirrored, out);
         });
     };
-    show(reader.book, reader.at, reader.mirrored, from, border);
-    if (border < to) show(reader.bookBefore, reader.before, reader.mirroredBefore, border, to);
+    show(cursor.atlas, cursor.at, cursor.mirrored, from, border);
+    if (border < to) show(cursor.atlasBefore, cursor.before, cursor.mirroredBefore, border, to);
 }
 
 }  // namespace
@@ -408,7 +410,7 @@ uint32_t FlameRenderer::order(const BackendState& s, uint32_t slabs,
         ++count;
     }
     chooseVolumes({out.data(), count});
-    // By their middles: what overlaps in depth has no right order as a whole.
+    // By their middles: flames that overlap in depth have no right order as a whole.
     const auto middle = [](const VolumeItem& item) {
         return item.draw.front + 0.5f * item.draw.deep * float(item.draw.slabs);
     };
@@ -476,12 +478,12 @@ uint64_t FlameRenderer::detailBytes(const BackendState& s) const noexcept {
     uint64_t all = 0;
     for (const core::Owned<OutsideView>& of : s.outsideViews.all) {
         if (!of) continue;
-        // Impostors and atlases lie before the rays; those are by flames.
-        const uint64_t cards = (uint64_t(of->march.slots) * kPairWords +
-                                of->march.atlasCapacity * kImpostorAtlasWords) *
-                               sizeof(uint32_t);
+        // The words of impostors and atlases, before the rays, follow the number of flames.
+        const uint64_t impostors = (uint64_t(of->march.slots) * kPairWords +
+                                    of->march.atlasCapacity * kImpostorAtlasWords) *
+                                   sizeof(uint32_t);
         const uint64_t rays = s.buffers.bytes(poolOf(kPoolVolumeRays, of->number));
-        all += rays - std::min(rays, cards) + s.buffers.bytes(poolOf(kPoolFlames, of->number));
+        all += rays - std::min(rays, impostors) + s.buffers.bytes(poolOf(kPoolFlames, of->number));
     }
     return all;
 }

@@ -1,5 +1,4 @@
-// Volumetric flames: what draws show of them, the march of each view, and the order in which a
-// view draws them.
+// Volumetric flames: their boxes, the march of each view, and the order in which a view draws them.
 #pragma once
 #include "gpu/vk/frame.h"
 #include "gpu/vk/outside_views.h"
@@ -26,21 +25,21 @@ struct FlameRenderer {
     explicit FlameRenderer(std::pmr::memory_resource* pmr) : volumes(pmr) {}
     // The flames of the frame, as they are drawn until the next ones come.
     void record(const VolumeUpdate& update, FrameRecorder& recorder);
-    // Before the first command: space for what is marched; less of it makes it coarser.
+    // Before the first command: space for the march of a view; less space makes it coarser.
     void makeMarchRoom(BackendState& s, OutsideView& of, uint32_t flameCount, uint64_t last) const;
     // For the view that was last pushed, which is `of`'s.
     [[nodiscard]] MarchRecord march(const BackendState& s, OutsideView& of) const noexcept;
-    // What the view that was last pushed shows of them, farthest first; how many.
+    // The flames that the view that was last pushed shows, farthest first; returns their number.
     uint32_t order(const BackendState& s, uint32_t slabs,
                    std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
-    // What bends what is behind it in the view that was last pushed, farthest first; how many.
-    // `march`: that shows the flames, or null.
+    // The hot gas that distorts the view that was last pushed, farthest first; returns their
+    // number. `march`: the march that shows the flames, or null.
     uint32_t orderHazes(const BackendState& s, const March* march, float strength,
                         std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept;
-    // How a target of `size` px shows what is marched for it.
+    // The screen of a march for a target of `size` px.
     [[nodiscard]] VolumeScreen screenOf(const BackendState& s, const TargetKey& target,
                                         vec2 size) const noexcept;
-    // Of device memory, those that follow a plan's Detail::memory.
+    // Bytes of device memory that follow a plan's Detail::memory.
     [[nodiscard]] uint64_t detailBytes(const BackendState& s) const noexcept;
 
     std::pmr::vector<VolumeBox> volumes;              // that draws show

@@ -16,18 +16,18 @@ void zeroRow(FrameRecorder& r, uint32_t row) {
     r.fillZero(FW_BIND_COUNTERS, row * kRowBytes, kRowBytes);
 }
 
-StepPush pushOf(const FrameLists& lists) {
-    StepPush push{};
+template <class Push>
+void setLists(const FrameLists& lists, Push& push) noexcept {
     push.row = lists.row;
     push.parity = lists.parity;
     push.burnParity = lists.burnParity;
     push.predictParity = lists.predictParity;
     push.hotParity = lists.hotParity;
-    return push;
 }
 
 StepPush pushOf(const FrameLists& lists, const StepRecord& step) {
-    StepPush push = pushOf(lists);
+    StepPush push{};
+    setLists(lists, push);
     push.now = step.now;
     push.stepShift = step.stepShift;
     push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u) |
@@ -83,7 +83,7 @@ bool addressesAll(const TexelEvent& event) noexcept {
     return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlaybackSpan;
 }
 
-// --- What changed since the last frame ---
+// --- Changes since the last frame ---
 
 void recordReset(FrameRecorder& r, uint32_t object, uint32_t tiles) {
     StepPush push{};
@@ -93,7 +93,8 @@ void recordReset(FrameRecorder& r, uint32_t object, uint32_t tiles) {
 }
 
 void recordRestore(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles) {
-    StepPush push = pushOf(lists);
+    StepPush push{};
+    setLists(lists, push);
     push.object = object;
     r.dispatchItems(pass::restore, push, tiles);
 }
@@ -211,11 +212,7 @@ void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord&
                     const StepPush& budgetPush) {
     ExchangePush push = step.rules;
     push.now = budgetPush.now;
-    push.row = lists.row;
-    push.parity = lists.parity;
-    push.burnParity = lists.burnParity;
-    push.predictParity = lists.predictParity;
-    push.hotParity = lists.hotParity;
+    setLists(lists, push);
     push.switches = budgetPush.switches;
     push.count = step.objectSlots;
     zeroRow(r, kRowExchange);
@@ -333,13 +330,13 @@ void recordProbes(FrameRecorder& r, const Staged& probes) {
 
 namespace {
 
-// Zeroes what the march of `march` accumulates into.
+// Zeroes the words that the march of `march` accumulates into.
 void clearMarch(FrameRecorder& r, const MarchRecord& march) {
     if (march.end > march.first)
         r.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(march.first) * 4,
                    uint64_t(march.end - march.first) * 4);
     // Cells of impostors that no tile has are read too.
-    for (const MarchedVolume& one : march.volumes.last(march.cards))
+    for (const MarchedVolume& one : march.volumes.last(march.impostors))
         r.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(one.march.tiles) * 4,
                    uint64_t(kImpostorWords) * 4);
     uint32_t last = 0;
@@ -382,7 +379,7 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
         r.dispatch(pass::particles, moving, s.particles.emitterGroups);
         s.particles.particlesMove = vec3(0.0f);
     }
-    push.count = s.scene.books.live ? s.particles.flameFlipbooks : 0;
+    push.count = s.scene.flipbooks.live ? s.particles.flameFlipbooks : 0;
     const SparkPush sparks{room.lights, room.tiles + room.particles, moving.burnRow, 0};
     for (OutsideView* const of : from) {
         if (of != from[0]) target.viewOffset = s.pushView(slot, of->view, whole);
@@ -414,7 +411,7 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
 
 namespace {
 
-// Heat to levels, levels to triangles; what moves is listed to be placed.
+// Heat to levels, levels to triangles; moving vertices are listed to be placed.
 void recordLevels(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine) {
     RefinePush push = refine.push;
     push.row = lists.row;

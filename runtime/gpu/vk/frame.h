@@ -54,7 +54,7 @@ struct StepRecord {
     std::span<const ExtendedStep> extended;
     bool governed = false, capped = false, plays = false;
     bool exchange = false;
-    ExchangePush rules{};  // of the exchange, but for what the lists say
+    ExchangePush rules{};  // of the exchange, but for the places of lists
     uint32_t links = 0;    // contacts
     bool parts = false;    // some mesh has parts that touch
 };
@@ -69,11 +69,11 @@ struct FieldsRecord {
 // Whether an event concerns all texels of its object.
 [[nodiscard]] bool addressesAll(const TexelEvent& event) noexcept;
 
-// Inputs of a frame's march of volumetric flames, for one view. The last `cards` of `volumes` are
-// impostors; the words from `first` to `end` hold the tiles' history.
+// Inputs of a frame's march of volumetric flames, for one view. The last `impostors` of `volumes`
+// are impostors; the words from `first` to `end` hold the tiles' history.
 struct MarchRecord {
     std::span<const MarchedVolume> volumes;
-    uint32_t first = 0, end = 0, cards = 0;
+    uint32_t first = 0, end = 0, impostors = 0;
 };
 
 // A part of all tiles, which passes that need not look at all of them in each frame take in turn.
@@ -82,8 +82,8 @@ struct TileShare {
     uint32_t ticks = 0;  // since the pass last came to them
 };
 
-// `turn`: levels are chosen; else what was listed last time is placed again. `cuts`, `fresh`: some
-// object is.
+// `turn`: levels are chosen; else the triangles listed last time are placed again. `cuts`, `fresh`:
+// some object is.
 struct RefineRecord {
     RefinePush push{};
     bool turn = false, cuts = false, fresh = false;

@@ -216,7 +216,7 @@ FrameInFlight& makeRoom(BackendState& s, const FramePlan& plan, const FrameNeeds
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout =
         layoutReadback(s, plan, needs.iterations, needs.airs, readbackBytes);
-    const bool reads = needs.readback || plan.frameIndex == 0;  // a picture tells what it shows
+    const bool reads = needs.readback || plan.frameIndex == 0;  // a picture counts its quads
     if (slot.upload.size < needs.uploadBytes || (reads && slot.readback.size < readbackBytes))
         slot.readbackPending = false;
     ensure(s.deviceMemory, slot.upload, needs.uploadBytes, MemoryKind::upload);

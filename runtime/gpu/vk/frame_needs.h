@@ -29,11 +29,11 @@ struct FrameNeeds {
     bool exchanges = false;               // fire may come from other objects
     bool airs = false;                    // rooms have a step
     bool stimulus = false;                // an event or a latch
-    bool rebuildsPrediction = false;      // the first step wakes what forgets
+    bool rebuildsPrediction = false;      // the first step wakes objects that forget
     bool burning = false, predicting = false, extensionRuns = false, heating = false;
-    bool appears = false;                 // an object comes into view
-    bool falling = false;                 // burnt pieces may lose their hold
-    DeformGroups deform;                  // what deforms
+    bool appears = false;  // an object comes into view
+    bool falling = false;  // burnt pieces may lose their hold
+    DeformGroups deform;
     bool sheetsBegin = false;             // some sheet did not move in the frame before
     uint32_t fieldRuns = 0;               // steps and new masks
     bool fieldsShow = false;              // or showed until now

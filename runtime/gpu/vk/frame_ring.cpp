@@ -34,7 +34,7 @@ void FrameRing::pace(const FwVulkanFrame& frame, bool outside) {
         if (frame.frameSlot >= frame.framesInFlight)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameSlot is %u of %u in flight.",
                        frame.frameSlot, frame.framesInFlight);
-        // The slot is free again, so what was last recorded with it is done, and all before.
+        // The slot is free again: the frame last recorded with it is done, and all before.
         if (hostSlots_[frame.frameSlot] < frame.frameIndex)
             completed = std::max(completed, hostSlots_[frame.frameSlot]);
         hostSlots_[frame.frameSlot] = frame.frameIndex;
@@ -59,12 +59,6 @@ void FrameRing::pace(const FwVulkanFrame& frame, bool outside) {
     }
 }
 
-void FrameRing::dropFramebuffers(FrameInFlight& slot) noexcept {
-    for (uint32_t i = 0; i < slot.framebufferCount; ++i)
-        device_.destroy(device_.table.DestroyFramebuffer, slot.framebuffers[i]);
-    slot.framebufferCount = 0;
-}
-
 FrameInFlight& FrameRing::slotFor(uint64_t frameIndex) {
     for (FrameInFlight& slot : slots_) {
         if (slot.frameIndex == frameIndex) return slot;
@@ -85,7 +79,6 @@ FrameInFlight& FrameRing::slotFor(uint64_t frameIndex) {
                    "be in flight.",
                    (unsigned long long)frameIndex, (unsigned long long)completed_, kMaxInFlight);
     best->timers.create(device_);
-    dropFramebuffers(*best);
     best->timers.forget();
     best->frameIndex = frameIndex;
     best->uploadUsed = 0;

@@ -1,6 +1,7 @@
-// Frames in flight: pacing as the host tells it, and what each frame in flight owns (staging,
+// Frames in flight: the host's pacing, and the resources that each frame in flight owns (staging,
 // readback, queries). Decoupled from the host's slots. Never waits.
 #pragma once
+#include "core/assert.h"
 #include "flamewright/flamewright_vulkan.h"
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
@@ -46,8 +47,6 @@ struct FrameInFlight {
     ReadbackLayout layout;
     uint32_t views = 0;  // used of its part of the view ring
     FrameTimers timers;
-    std::array<VkFramebuffer, 8> framebuffers{};  // of its composites
-    uint32_t framebufferCount = 0;
     // Sets for the depth and the colour that hosts give: made together when the first is needed,
     // rewritten for each use in a frame.
     static constexpr uint32_t kHostDraws = 16;
@@ -65,8 +64,8 @@ class FrameRing {
 
     explicit FrameRing(Device& device) : device_(device) {}
 
-    // Checks the host's pacing and learns from it what is complete. `outside`: RecordOutside, whose
-    // index must be new. Throws and then learnt nothing.
+    // Checks the host's pacing, which says which frames are complete. `outside`: RecordOutside,
+    // whose index must be new. Throws and then learnt nothing.
     void pace(const FwVulkanFrame& frame, bool outside);
     // The frame's slot: the one it has, or one that the GPU is done with. Throws when the host is
     // more than kMaxInFlight frames ahead.
@@ -77,9 +76,9 @@ class FrameRing {
     void undoOutside() noexcept { newestOutside_ = previousOutside_; }
     void completeAll() noexcept { completed_ = newest_; }  // own device, after its wait
     [[nodiscard]] uint32_t indexOf(const FrameInFlight& slot) const noexcept {
+        FW_ASSERT(&slot >= slots_.data() && &slot < slots_.data() + slots_.size());
         return uint32_t(&slot - slots_.data());
     }
-    void dropFramebuffers(FrameInFlight& slot) noexcept;
     std::array<FrameInFlight, kMaxInFlight>& slots() noexcept { return slots_; }
 
  private:

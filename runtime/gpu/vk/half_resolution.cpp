@@ -1,4 +1,4 @@
-// What is soft of a view at half resolution: images for it, by size, and their passes.
+// Soft effects of a view at half resolution: images for them, by size, and their passes.
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/device_objects.h"
 
@@ -10,17 +10,6 @@ namespace fw::gpu::vk {
 namespace {
 
 constexpr uint64_t kHalfKept = 60;  // frames from when a size was last drawn
-
-// Once its last frame is done.
-void dropHalf(BackendState& s, HalfImages& half) noexcept {
-    s.retired.push(
-        half.lastFrame,
-        {.image = half.color, .pool = half.colorSet.pool, .framebuffer = half.colorBuffer});
-    s.retired.push(
-        half.lastFrame,
-        {.image = half.depth, .pool = half.depthSet.pool, .framebuffer = half.depthBuffer});
-    half = {};
-}
 
 void makeHalf(BackendState& s, HalfImages& half, VkFormat format, uint32_t width, uint32_t height) {
     constexpr size_t kPieces = 2;
@@ -76,13 +65,14 @@ HalfImages& halfFor(BackendState& s, VkFormat format, uint32_t width, uint32_t h
 
 }  // namespace
 
-void destroyHalf(BackendState& s, HalfImages& half) noexcept {
-    const Table& vk = s.device.table;
-    for (Image* image : {&half.color, &half.depth}) s.deviceMemory.destroy(*image);
-    for (ImageSet* set : {&half.colorSet, &half.depthSet})
-        s.device.destroy(vk.DestroyDescriptorPool, set->pool);
-    for (VkFramebuffer* framebuffer : {&half.colorBuffer, &half.depthBuffer})
-        s.device.destroy(vk.DestroyFramebuffer, *framebuffer);
+void dropHalf(BackendState& s, HalfImages& half) noexcept {
+    s.retired.push(
+        half.lastFrame,
+        {.image = half.color, .pool = half.colorSet.pool, .framebuffer = half.colorBuffer});
+    s.retired.push(
+        half.lastFrame,
+        {.image = half.depth, .pool = half.depthSet.pool, .framebuffer = half.depthBuffer});
+    half = {};
 }
 
 HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer commands,
@@ -100,26 +90,17 @@ HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer com
     if (half.fresh) {
         VkImageMemoryBarrier barrier = imageBarrier(half.depth.handle, VK_IMAGE_ASPECT_COLOR_BIT);
         barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
-                              VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, nullptr, 0,
-                              nullptr, 1, &barrier);
+        recordBarriers(vk, commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                       VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, {&barrier, 1});
         half.fresh = false;
     }
-    auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
     const VkClearValue nothing{};
-    const auto into = [&](VkRenderPass pass, VkFramebuffer framebuffer, uint32_t height) {
-        begin.renderPass = pass;
-        begin.framebuffer = framebuffer;
-        begin.renderArea.extent = {half.width, height};
-        begin.clearValueCount = 1;
-        begin.pClearValues = &nothing;
-        vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    };
     // All of a part of the image, with one set.
     const auto fill = [&](draw::Number number, uint32_t place, VkDescriptorSet set,
                           const VkViewport& part) {
         const VkPipelineLayout layout = s.context.pipelines.draw(number).layout;
-        into(s.context.pipelines.halfDepthPass(), half.depthBuffer, half.height + half.tilesY);
+        beginPass(vk, commands, s.context.pipelines.halfDepthPass(), half.depthBuffer,
+                  {half.width, half.height + half.tilesY}, {&nothing, 1});
         slot.timers.begin(s.device, commands, drawPasses()[number].name);
         setViewport(s, commands, part);
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
@@ -134,7 +115,8 @@ HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer com
     };
     fill(draw::half_depth, 3, host.depth, {0, 0, float(half.width), float(half.height), 0, 1});
 
-    into(s.context.pipelines.halfPass(half.format), half.colorBuffer, half.height);
+    beginPass(vk, commands, s.context.pipelines.halfPass(half.format), half.colorBuffer,
+              {half.width, half.height}, {&nothing, 1});
     const VkViewport halved{0, 0, 0.5f * viewport.width, 0.5f * viewport.height, 0, 1};
     recordDraws(s, slot, commands, target, view, halved, {half.depthSet.set, VK_NULL_HANDLE},
                 DrawPart::half);
@@ -147,8 +129,18 @@ HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer com
 }
 
 HalfPush halfPushFor(const BackendState& s, const VkViewport& viewport) noexcept {
-    return halfPush(s.seen, int(viewport.x), int(viewport.y), uint32_t(viewport.width),
-                    uint32_t(viewport.height));
+    const auto parts = [](uint32_t all, uint32_t each) { return (all + each - 1) / each; };
+    HalfPush push{};
+    push.clip = volumeClip(s.seen);
+    push.left = int(viewport.x);
+    push.top = int(viewport.y);
+    push.width = uint32_t(viewport.width);
+    push.height = uint32_t(viewport.height);
+    push.texelsX = parts(push.width, 2);
+    push.texelsY = parts(push.height, 2);
+    push.tilesX = parts(push.texelsX, kHalfTile);
+    push.tilesY = parts(push.texelsY, kHalfTile);
+    return push;
 }
 
 }  // namespace fw::gpu::vk

@@ -34,7 +34,7 @@ struct SrgbTable {
     }
 };
 
-// `byAlpha`: what is not there has no say in the colour.
+// `byAlpha`: transparent pixels do not change the colour.
 void halveSrgb(const SrgbTable& table, const std::byte* from, uint32_t width, uint32_t height,
                std::byte* to, bool byAlpha) {
     const uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
@@ -61,8 +61,8 @@ void halveSrgb(const SrgbTable& table, const std::byte* from, uint32_t width, ui
     }
 }
 
-// Pixels that are not there take the colour of the next coarser level, so that what lies around a
-// cut-out does not shine through its edge.
+// Transparent pixels take the colour of the next coarser level, so that the surroundings of a
+// cut-out do not shine through its edge.
 void fillGone(std::byte* pixels, uint32_t width, uint32_t height, const std::byte* coarser) {
     const uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
     for (uint32_t y = 0; y < height; ++y)
@@ -192,8 +192,8 @@ void VkBackend::setFlipbooks(uint32_t width, uint32_t height, std::span<const st
         addImage(s, fresh, width, height, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, texels, "flipbooks");
         staged.keep();
     }
-    if (s.scene.books.live) dropImage(s, s.scene.books);
-    s.scene.books = fresh;
+    if (s.scene.flipbooks.live) dropImage(s, s.scene.flipbooks);
+    s.scene.flipbooks = fresh;
 }
 
 // A fire profile of the host's comes behind those of presets.

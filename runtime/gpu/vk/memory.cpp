@@ -69,7 +69,7 @@ Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind,
     // Before the device's memory is there: nothing may throw after that.
     block.bytes.addCapacity(std::max(needs.size, kBlockSize));
     const uint64_t first = block.bytes.allocate(needs.size);
-    auto info = typed<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    Typed<VkMemoryAllocateInfo> info;
     info.allocationSize = size;
     info.memoryTypeIndex = type;
     const Table& vk = device_.table;
@@ -132,7 +132,7 @@ Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, M
     Buffer buffer;
     buffer.size = size;
     buffer.component = component;
-    auto info = typed<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+    Typed<VkBufferCreateInfo> info;
     info.size = size;
     info.usage = usage;
     buffer.handle = device_.create(vk.CreateBuffer, info, "vkCreateBuffer");
@@ -146,7 +146,7 @@ Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, M
             "vkBindBufferMemory");
         if (kind != MemoryKind::device) buffer.mapped = block.mapped + buffer.memory.offset;
         if (usage & VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT) {
-            auto view = typed<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
+            Typed<VkBufferViewCreateInfo> view;
             view.buffer = buffer.handle;
             view.format = VK_FORMAT_R32G32B32A32_UINT;
             view.range = size & ~VkDeviceSize{15};
@@ -176,7 +176,7 @@ Image DeviceMemory::createImage(const VkImageCreateInfo& info, VkImageAspectFlag
         device_.check(vk.BindImageMemory(device_.handle, image.handle,
                                          blocks_[image.memory.block].memory, image.memory.offset),
                       "vkBindImageMemory");
-        auto view = typed<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+        Typed<VkImageViewCreateInfo> view;
         view.image = image.handle;
         view.viewType = info.arrayLayers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
         view.format = info.format;

@@ -40,7 +40,7 @@ struct Image {
     uint32_t component = 0;
 };
 
-// Who holds the memory, in the report's order.
+// The parts that hold memory, in the report's order.
 enum Component : uint32_t {
     kComponentMeshes,
     kComponentObjects,
@@ -65,7 +65,7 @@ class DeviceMemory {
     DeviceMemory(const DeviceMemory&) = delete;
     DeviceMemory& operator=(const DeviceMemory&) = delete;
 
-    // Throw core::Error FW_ERROR_OUT_OF_MEMORY naming what for, how much and the budget.
+    // Throw core::Error FW_ERROR_OUT_OF_MEMORY with the purpose, the size and the budget.
     Buffer createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, MemoryKind kind,
                         Component component, const char* name);
     Image createImage(const VkImageCreateInfo& info, VkImageAspectFlags aspect, Component component,

@@ -1,4 +1,4 @@
-// Meshes as they come and go: what objects of one mesh share on the device.
+// Creation and destruction of meshes: the data that objects of one mesh share on the device.
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/drawn_order.h"
 #include "gpu/vk/vk_extension.h"

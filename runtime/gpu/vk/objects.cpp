@@ -1,5 +1,5 @@
-// Objects as they come and go, and where hosts move them. What becomes of them within a frame is
-// simulation.cpp's.
+// Creation and destruction of objects, and the changes that hosts make to them. simulation.cpp
+// records what a frame does to them.
 #include "core/growth.h"
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/drawn_order.h"
@@ -95,7 +95,7 @@ bool isSheet(const ObjectInit& init) noexcept {
     return init.deform && (init.deform->flags & (kDeformShell | kDeformExtended)) != 0;
 }
 
-// Everything that may fail before a new object in `slot` has anything of its own.
+// Reserves space in all tables for a new object in `slot`.
 void reserveForObject(BackendState& s, uint32_t slot, uint64_t last) {
     const size_t live = s.scene.liveObjects + 1;
     core::growTo(s.scene.quarantine, s.scene.quarantine.size() + live);
@@ -204,7 +204,7 @@ void fillDeformation(const ObjectInit& init, const MeshEntry& mesh, uint32_t slo
     if (fresh.deforms.skinPlus1) std::copy_n(init.shape, 3, fresh.shape);
 }
 
-// Has no frame anything to do for it, until somebody changes it or something reaches it?
+// Whether frames have nothing to do for it until a change or an event.
 bool rests(const ObjectEntry& object) noexcept {
     if (object.recordDirty || object.materialsDirty || object.resetDue) return false;
     if (!object.live) return true;
@@ -229,7 +229,7 @@ void SceneTables::noteFire(uint32_t slot, uint32_t tick) noexcept {
     awake.insert(slot);
     ObjectEntry& object = objects[slot];
     if (!object.refine.on) return;
-    uint32_t opens = 0;  // what burns may open later than it goes out
+    uint32_t opens = 0;  // a hole may open after its fire is out
     if ((object.record.flags & kObjectNoHoles) == 0)
         for (const BurnMaterial& m : object.materials) opens = std::max(opens, m.holeTicks);
     const uint64_t quiet = uint64_t(tick) + kQuietTicks + opens;

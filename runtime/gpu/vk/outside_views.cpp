@@ -76,7 +76,7 @@ void OutsideViews::makeRoom(BackendState& s, uint32_t flameCount, bool marches,
         }
         if (marches) s.flames.makeMarchRoom(s, *of, flameCount, last);
     }
-    // A limit on memory also holds while nobody looks.
+    // A limit on memory also holds without a view.
     if (s.seenFrom().empty() && marches) s.flames.makeMarchRoom(s, *all[0], flameCount, last);
 }
 

@@ -20,7 +20,7 @@ struct BackendState;
 struct March {
     VolumeScreen screen;   // no size: none was seen
     uint64_t frame = 0;    // that saw it: of several screens in a frame the largest counts
-    VolumeScreen made;     // of what is in the buffer
+    VolumeScreen made;     // of the buffer's content
     VolumeScreen unknown;  // that was last drawn before anything was marched for it
     FwView view{};         // and its view; in the buffer nothing: count is 0
     bool there = false;
@@ -28,20 +28,21 @@ struct March {
     // Cards that are marched behind them.
     std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames> items;
     uint32_t impostorCount = 0;
-    std::array<VolumeImpostor, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
+    std::array<VolumeImpostor, 4 * kMaxVolumeFlames>
+        impostors;  // a flame may turn from atlas to impostor
     uint32_t callCount = 0;
     std::array<VolumeCall, kMaxVolumeFlames> calls;  // of flames that an extension draws
     VolumeOrder order;                               // of all of them
     TierLives lives;
     std::array<ImpostorPair, kMaxVolumeFlames> pairs;  // by life
-    ImpostorAtlases books;
-    std::array<AtlasCursor, kMaxVolumeFlames> readers;  // by life
-    uint32_t atlasCapacity = 0;                // books that there is to be room for, behind pairs
+    ImpostorAtlases atlases;
+    std::array<AtlasCursor, kMaxVolumeFlames> cursors;  // by life
+    uint32_t atlasCapacity = 0;                // atlases that space is requested for, behind pairs
     uint32_t atlasIdleFrames = 0;              // frames in which none was wanted
-    bool atlasSpare = false;                   // there is room for books that are gone
-    uint32_t impostorSlot = 0;                 // of cards: the first of theirs
-    uint32_t atlasEncoding = 0;                // of their pages
-    uint32_t slots = 0;                        // pairs that there is room for, before all else
+    bool atlasSpare = false;                   // the buffer has space for freed atlases
+    uint32_t impostorSlot = 0;                 // of impostors: the first of theirs
+    uint32_t atlasEncoding = 0;                // of their frames
+    uint32_t slots = 0;                        // pairs that have space, before all else
     uint32_t capacity = 0;                     // of the buffer when they were made
     uint64_t passed = 0;                       // frames
     std::array<float, kMaxVolumeFlames> haze;  // by flame, [0, 1]: how much of it shows
@@ -51,8 +52,7 @@ struct OutsideView {
     explicit OutsideView(uint32_t of) : number(of) {}
     // A draw in `ringFrame` shows `shown` so.
     void recordScreen(const FwView& shown, const VolumeScreen& screen, uint64_t ringFrame) noexcept;
-    // Whether what is marched is for `shown` on this screen; else flames are marched as they are
-    // drawn.
+    // Whether the march is for `shown` on this screen; else flames are marched as they are drawn.
     [[nodiscard]] bool isMarchedFor(const FwView& shown, const VolumeScreen& screen) const noexcept;
     // Rays a side of a pixel, of the view as it is drawn: more where nobody could know its screen,
     // in the first picture and after a resize. A second screen of each frame takes them once.
@@ -86,7 +86,7 @@ struct OutsideViews {
     std::pmr::memory_resource* memory_;
 };
 
-// Whether what was marched for one view is what another shows.
+// Whether the march for one view is right for another.
 [[nodiscard]] bool sameView(const FwView& a, const FwView& b) noexcept;
 
 }  // namespace fw::gpu::vk

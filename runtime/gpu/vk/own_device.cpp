@@ -82,7 +82,7 @@ void submitOwn(BackendState& s) {
     Device& device = s.device;
     const Table& vk = device.table;
     device.check(vk.EndCommandBuffer(s.own.commands), "vkEndCommandBuffer");
-    auto submit = typed<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    Typed<VkSubmitInfo> submit;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &s.own.commands;
     device.check(vk.QueueSubmit(device.queue, 1, &submit, s.own.fence), "vkQueueSubmit");
@@ -100,13 +100,12 @@ void openOwn(BackendState& s) {
     if (!s.context.pipelines.ready()) s.context.pipelines.prepare();
     const Table& vk = device.table;
     if (!own.pool) {
-        auto pool = typed<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+        Typed<VkCommandPoolCreateInfo> pool;
         pool.queueFamilyIndex = device.queueFamily;
         own.pool = device.create(vk.CreateCommandPool, pool, "vkCreateCommandPool");
     }
     if (!own.commands) {
-        auto allocate =
-            typed<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+        Typed<VkCommandBufferAllocateInfo> allocate;
         allocate.commandPool = own.pool;
         allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
         allocate.commandBufferCount = 1;
@@ -114,11 +113,11 @@ void openOwn(BackendState& s) {
                      "vkAllocateCommandBuffers");
     }
     if (!own.fence) {
-        const auto fence = typed<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+        const Typed<VkFenceCreateInfo> fence;
         own.fence = device.create(vk.CreateFence, fence, "vkCreateFence");
     }
     device.check(vk.ResetCommandPool(device.handle, own.pool, 0), "vkResetCommandPool");
-    auto begin = typed<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    Typed<VkCommandBufferBeginInfo> begin;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     device.check(vk.BeginCommandBuffer(own.commands, &begin), "vkBeginCommandBuffer");
     FwVulkanFrame frame{};
@@ -137,13 +136,7 @@ void recordPicture(BackendState& s, const FwOffscreenDef& def, const Target& tar
     std::array<VkClearValue, 2> clears{};
     std::memcpy(clears[0].color.float32, def.background, sizeof def.background);
     clears[1].depthStencil.depth = 1;
-    auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
-    begin.renderPass = own.clearPass;
-    begin.framebuffer = own.framebuffer;
-    begin.renderArea.extent = {def.width, def.height};
-    begin.clearValueCount = uint32_t(clears.size());
-    begin.pClearValues = clears.data();
-    vk.CmdBeginRenderPass(own.commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    beginPass(vk, own.commands, own.clearPass, own.framebuffer, {def.width, def.height}, clears);
     const VkViewport viewport{0, 0, float(def.width), float(def.height), 0, 1};
     recordDraws(s, slot, own.commands, target, def.view, viewport, {});
     vk.CmdEndRenderPass(own.commands);
@@ -152,14 +145,14 @@ void recordPicture(BackendState& s, const FwOffscreenDef& def, const Target& tar
     toCopy.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
     toCopy.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     toCopy.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    vk.CmdPipelineBarrier(own.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                          VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &toCopy);
+    recordBarriers(vk, own.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                   VK_PIPELINE_STAGE_TRANSFER_BIT, {&toCopy, 1});
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {def.width, def.height, 1};
     vk.CmdCopyImageToBuffer(own.commands, own.color.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                             own.pixels.handle, 1, &region);
-    auto toHost = typed<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    Typed<VkMemoryBarrier> toHost;
     toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
     vk.CmdPipelineBarrier(own.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT,
@@ -194,8 +187,7 @@ void VkBackend::renderOffscreen(const FwOffscreenDef& def) {
     uint64_t ringFrame = 0;
     bool recorded = false;
     try {
-        // A frame without steps: brings what waits to the device, and what looks need for this
-        // view.
+        // A frame without steps: uploads pending changes, and records the effects of this view.
         FramePlan plan;
         plan.frameIndex = 0;  // nobody waits for its readback
         plan.detail = s.detail;

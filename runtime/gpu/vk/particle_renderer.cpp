@@ -16,7 +16,7 @@ uint32_t tileQuads(const WorldLimits& limits) noexcept {
 
 }  // namespace
 
-// Some particles show twice while fire turns to smoke; who finds no quad is not seen.
+// Some particles show twice while fire turns to smoke. A particle that finds no quad is not drawn.
 void ParticleRenderer::makeRoom(BackendState& s, const EmitterUpdate& update, uint64_t last) {
     lightShare = 0.0f;
     if (update.count == 0 && update.sparkCount == 0) return;
@@ -28,8 +28,8 @@ void ParticleRenderer::makeRoom(BackendState& s, const EmitterUpdate& update, ui
     const uint32_t lights = update.sparkQuads + update.lightParticles;
     const uint32_t requested = hiding + lights;
     lightShare = float(lights) / float(requested);
-    // Who finds no quad is not seen, so that under a limit there is room for those that show:
-    // a twelfth of them does in part (shownShare).
+    // Under a limit there is space for the particles that show: a twelfth of them does in part
+    // (shownShare).
     const bool limited = s.detail.memory < 1;
     const float share = limited ? std::min(s.detail.quads * 13.0f / 12.0f, 1.0f) : 1.0f;
     const auto shown = uint32_t(float(requested) * share);
@@ -56,15 +56,15 @@ void ParticleRenderer::record(const EmitterUpdate& update, FrameRecorder& record
 bool ParticleRenderer::onlyFlipbooks(const BackendState& s) const noexcept {
     const bool tiles =
         s.simulation.burnEmpty || ((flameFlipbooks & 0xFFu) != 0 && flameFlipbooks >> 8 != 0);
-    return s.scene.books.live && tiles && (emitterGroups == 0 || particlesByFlipbook);
+    return s.scene.flipbooks.live && tiles && (emitterGroups == 0 || particlesByFlipbook);
 }
 
 SortPush ParticleRenderer::quadRoom(const BackendState& s) const noexcept {
     SortPush room{};
     room.tiles = tileQuads(s.limits);
     const uint32_t all = std::min(s.buffers.capacity(kPoolFlames) - quadUnits(0), kMaxQuads);
-    // What emits alone has places of its own; an emitter with more or fewer than requested has
-    // both.
+    // Particles that only emit have places of their own; an emitter with more or fewer than
+    // requested has both.
     const uint32_t behind = all - std::min(all, room.tiles);
     room.lights = std::min(uint32_t(std::ceil(float(behind) * lightShare)), behind);
     room.particles = behind - room.lights;

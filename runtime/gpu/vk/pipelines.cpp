@@ -249,8 +249,7 @@ struct DrawPipeline {
 
     bool colors;  // else positions are all it reads
     std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
-    VkGraphicsPipelineCreateInfo info =
-        typed<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+    Typed<VkGraphicsPipelineCreateInfo> info;
 
  private:
     void setConstants(const DrawPass& pass, const TargetKey& key);
@@ -260,24 +259,15 @@ struct DrawPipeline {
 
     uint32_t constants_[5];
     VkSpecializationInfo special_{};
-    VkPipelineVertexInputStateCreateInfo input_ = typed<VkPipelineVertexInputStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-    VkPipelineInputAssemblyStateCreateInfo assembly_ =
-        typed<VkPipelineInputAssemblyStateCreateInfo>(
-            VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-    VkPipelineViewportStateCreateInfo viewport_ = typed<VkPipelineViewportStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-    VkPipelineRasterizationStateCreateInfo raster_ = typed<VkPipelineRasterizationStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-    VkPipelineMultisampleStateCreateInfo multisample_ = typed<VkPipelineMultisampleStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-    VkPipelineDepthStencilStateCreateInfo depth_ = typed<VkPipelineDepthStencilStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+    Typed<VkPipelineVertexInputStateCreateInfo> input_;
+    Typed<VkPipelineInputAssemblyStateCreateInfo> assembly_;
+    Typed<VkPipelineViewportStateCreateInfo> viewport_;
+    Typed<VkPipelineRasterizationStateCreateInfo> raster_;
+    Typed<VkPipelineMultisampleStateCreateInfo> multisample_;
+    Typed<VkPipelineDepthStencilStateCreateInfo> depth_;
     std::array<VkPipelineColorBlendAttachmentState, 8> blends_{};
-    VkPipelineColorBlendStateCreateInfo blend_ = typed<VkPipelineColorBlendStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-    VkPipelineDynamicStateCreateInfo dynamic_ = typed<VkPipelineDynamicStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+    Typed<VkPipelineColorBlendStateCreateInfo> blend_;
+    Typed<VkPipelineDynamicStateCreateInfo> dynamic_;
 };
 
 DrawPipeline::DrawPipeline(const DrawPass& pass, const TargetKey& key)
@@ -431,7 +421,7 @@ void Pipelines::destroy() noexcept {
 
 void Pipelines::makeLayouts() {
     const Table& vk = device_.table;
-    auto sampler = typed<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
+    Typed<VkSamplerCreateInfo> sampler;
     sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
     sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
     sampler.addressModeU = sampler.addressModeV = sampler.addressModeW =
@@ -449,8 +439,7 @@ void Pipelines::makeLayouts() {
     halfDepthPass_ = makeHalfPass(kHalfDepth, false);
 
     const auto setLayout = [&](std::span<const VkDescriptorSetLayoutBinding> bindings) {
-        auto info = typed<VkDescriptorSetLayoutCreateInfo>(
-            VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+        Typed<VkDescriptorSetLayoutCreateInfo> info;
         info.bindingCount = uint32_t(bindings.size());
         info.pBindings = bindings.data();
         return device_.create(vk.CreateDescriptorSetLayout, info, "vkCreateDescriptorSetLayout");
@@ -474,8 +463,7 @@ void Pipelines::makeLayouts() {
                                                imageLayout_};
         FW_ASSERT(setCount <= std::size(sets) && pushBytes <= 128, "%u sets, %u bytes", setCount,
                   pushBytes);
-        auto layout =
-            typed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+        Typed<VkPipelineLayoutCreateInfo> layout;
         layout.setLayoutCount = setCount;
         layout.pSetLayouts = sets;
         layout.pushConstantRangeCount = pushBytes ? 1 : 0;
@@ -498,7 +486,7 @@ void Pipelines::makeLayouts() {
 }
 
 VkShaderModule Pipelines::module(std::span<const uint32_t> code) const {
-    auto info = typed<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    Typed<VkShaderModuleCreateInfo> info;
     info.codeSize = code.size_bytes();
     info.pCode = code.data();
     return device_.create(device_.table.CreateShaderModule, info, "vkCreateShaderModule");
@@ -540,8 +528,7 @@ void Pipelines::prepare() {
         PassObjects& objects = compute_[i];
         if (objects.pipeline) continue;
         const ComputePass& pass = computePasses()[i];
-        auto info =
-            typed<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+        Typed<VkComputePipelineCreateInfo> info;
         info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
         info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
         info.stage.module = module(codeOf(pass, device_.texels));
@@ -627,7 +614,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     return pipeline;
 }
 
-// Those of `passes` that the target shows and has not got.
+// Makes the missing pipelines of `passes` that the target draws.
 void Pipelines::makePipelines(Target& target, DrawPassSet passes) {
     const TargetKey& key = target.key;
     const VkRenderPass renderPass = key.composite ? target.ownPass : target.hostPass;
@@ -643,7 +630,7 @@ void Pipelines::makePipelines(Target& target, DrawPassSet passes) {
     Modules modules(*this);
     try {
         makeDue(target, due, renderPass, modules);
-    } catch (...) {  // what was made stays and counts
+    } catch (...) {  // pipelines that were made stay and count
         drawTotal_ -= before + count - target.made;
         target.total = target.made.load();
         throw;
@@ -677,7 +664,7 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
     target->hostPass = def.renderPass;
     try {
         if (key.composite) target->ownPass = makePass(key);
-        // Others may register meanwhile; what is needed meanwhile is little.
+        // Without the lock, so that others may register meanwhile.
         makePipelines(*target, key.asNeeded ? ~waitingPasses() | needed_ : ~DrawPassSet(0));
         const std::lock_guard making(makes_);
         makePipelines(*target, needed_);
@@ -691,7 +678,7 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
 
 void Pipelines::need(DrawPassSet passes) {
     if ((passes & ~needed_) == 0) return;
-    // Nobody makes or destroys a target now, and who looks one up does not wait for this.
+    // No target is made or destroyed under this lock, and look-ups do not wait for it.
     const std::lock_guard making(makes_);
     for (uint32_t i = 0; i < targets_.slotCount(); ++i) {
         if (auto* target = targets_.at(i)) makePipelines(**target, passes);

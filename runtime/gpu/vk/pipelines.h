@@ -33,7 +33,7 @@ struct DescriptorSlot {
                                                           : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
 }
 
-// What of a target decides its pipelines.
+// The properties of a target that decide its pipelines.
 struct TargetKey {
     VkFormat color = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
     uint32_t subpass = 0, samples = 1, colorAttachments = 1;
@@ -42,7 +42,7 @@ struct TargetKey {
     bool surfaces = true, flames = true;
     bool reversedDepth = false, composite = false, haze = false;
     bool transparency = false;  // frames may be transparent
-    bool half = false;          // what is soft is drawn at half resolution
+    bool half = false;          // soft effects are drawn at half resolution
     bool asNeeded = false;
     VkFormat halfColor = VK_FORMAT_UNDEFINED;
     FwOutputEncoding encoding = FW_OUTPUT_LINEAR;
@@ -95,8 +95,8 @@ class Pipelines {
     // Both leave them ready for our shaders.
     [[nodiscard]] VkRenderPass halfPass(VkFormat color) const;
     [[nodiscard]] VkRenderPass halfDepthPass() const { return halfDepthPass_; }
-    // In an image that ends at 1 what is brighter is lost before smoke is laid over it: the one of
-    // half resolution ends where its target does, or it would be brighter.
+    // An image that ends at 1 loses brighter light before smoke covers it. The image of half
+    // resolution ends where its target does, or it would be brighter.
     static constexpr std::array kHalfColors{VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB,
                                             VK_FORMAT_R8G8B8A8_UNORM};
     static constexpr VkFormat kHalfDepth = VK_FORMAT_R32_SFLOAT;
@@ -124,7 +124,7 @@ class Pipelines {
     std::mutex prepares_;  // of compute_, until ready_
     std::atomic<uint32_t> computeMade_{0};
     std::atomic<uint32_t> drawMade_{0}, drawTotal_{0};  // of all targets, those being made included
-    std::mutex makes_;  // taken before mutex_, by who makes targets or what they need
+    std::mutex makes_;  // taken before mutex_, to make targets or their pipelines
     std::atomic<DrawPassSet> needed_{0};
     std::mutex mutex_;  // of what follows; held for no longer than a record call may wait
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;

@@ -98,17 +98,17 @@ std::span<const ObjectImage> takeImages(ReadbackResults& results, const std::byt
     return results.givenImages;
 }
 
-// What an object's counters say of how it is drawn from now on.
+// An object's counters decide how it is drawn from now on.
 void updateFromCounters(BackendState& s, uint32_t slot, ObjectCounters& counters, uint32_t tick) {
     SceneTables& scene = s.scene;
     if (counters.burning != 0 || counters.frontTiles != 0) scene.noteFire(slot, tick);
-    // What others lit or warm is found here; of what rests nothing more is read.
+    // Objects that others lit or warmed wake here; sleeping objects need nothing more.
     if (counters.ignited != 0 || counters.until != 0) scene.awake.insert(slot);
     if (!scene.awake.contains(slot)) return;
     ObjectEntry& object = scene.objects[slot];
     if (object.refine.extendedPlus1)
         counters.refined = extension()->vulkan->refinedCount(s, object);
-    // Of what burns little is left cold; what is warm may turn brown before it burns.
+    // A charred object has few cold texels; a warm one may turn brown before it burns.
     const bool known = object.live && !object.resetDue;
     const bool lit = known && counters.ignited != 0;
     const bool warm = known && counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
@@ -120,7 +120,7 @@ void updateFromCounters(BackendState& s, uint32_t slot, ObjectCounters& counters
     object.burn.charred = charred;
 }
 
-// What the counters' rows say of the lists, and so of what later frames have to do.
+// The counters' rows say which lists are empty, and so which passes later frames may skip.
 void takeCounters(BackendState& s, const std::byte* from, const ReadbackLayout& layout,
                   uint64_t ringFrame) {
     Readback& given = s.results.given;
@@ -174,7 +174,7 @@ void takeReadback(BackendState& s, FrameInFlight& slot, const PendingReadback& o
 
 void ReadbackResults::push(const PendingReadback& one) noexcept {
     const auto size = uint32_t(pending.size());
-    if (pendingCount == size) {  // nobody fetched them: the oldest goes
+    if (pendingCount == size) {  // the host fetched none: the oldest is dropped
         pendingFirst = (pendingFirst + 1) % size;
         --pendingCount;
     }

@@ -12,7 +12,7 @@ struct ObjectEntry;
 struct PendingReadback {  // in the order of frames
     uint64_t ringFrame = 0;
     int32_t slot = -1;   // -1: nothing was simulated, the last figures hold
-    int32_t looks = -1;  // slot of a frame that recorded looks alone, whose passes took time
+    int32_t looks = -1;  // slot of a frame that recorded effects alone, whose passes took time
     uint64_t frameIndex = 0;
     uint32_t endTick = 0;
 };
@@ -60,7 +60,7 @@ struct ReadbackResults {
 // Where the pieces of the frame's readback will lie; `bytes`: all of it. May throw.
 [[nodiscard]] ReadbackLayout layoutReadback(BackendState& s, const FramePlan& plan,
                                             uint64_t iterations, bool airs, uint64_t& bytes);
-// The end of a frame's recording: copies what its layout says.
+// The end of a frame's recording: copies the pieces of its layout.
 void recordReadback(BackendState& s, FrameInFlight& slot);
 // Applies the counters that a view wrote.
 void applyShown(BackendState& s, const ReadbackLayout& layout, const std::byte* from) noexcept;

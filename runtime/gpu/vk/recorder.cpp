@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include "core/assert.h"
 
 namespace fw::gpu::vk {
 
@@ -41,6 +42,8 @@ void FrameRecorder::end() { t_.slot->timers.end(*t_.device, t_.commands); }
 
 void FrameRecorder::dispatchGroups(uint32_t pass, const void* push, uint32_t groups,
                                    uint32_t rows) {
+    FW_ASSERT(rows > 0 && rows <= kMaxGroups, "%u rows of pass %s", rows,
+              computePasses()[pass].name);
     bind(pass, push, kNoResource);
     t_.device->table.CmdDispatch(t_.commands, std::min(groups, kMaxGroups), rows, 1);
     end();

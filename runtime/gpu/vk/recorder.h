@@ -11,7 +11,7 @@
 
 namespace fw::gpu::vk {
 
-struct RecordTarget {  // what a recorder works on; all of it outlives the recorder
+struct RecordTarget {  // a recorder's surroundings, which outlive it
     const Device* device = nullptr;
     const Pipelines* pipelines = nullptr;
     const PassSets* sets = nullptr;
@@ -74,7 +74,7 @@ class FrameRecorder {
                           uint64_t at) {
         dispatchAt(pass.number, &push, resource, at);
     }
-    // Flames at once: none sees what another writes.
+    // All flames without barriers between them: none reads what another writes.
     void dispatchVolumes(ComputePassOf<MarchPush> pass, std::span<const MarchedVolume> volumes,
                          VolumesOf which);
 

@@ -20,7 +20,7 @@ constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 constexpr float kCutFrom = 4, kCutTo = 3;
 // Levels short of what its size asks for, with which a triangle still says where its holes are.
 constexpr float kFewestLevels = 1.25f, kFewestAgain = 0.9f;
-constexpr float kCutNear = 10;          // where rims show what only cut ones can
+constexpr float kCutNear = 10;          // where only cut holes show their rims
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
 // Of the budget, what levels aim at: they are on their way for a moment, and some objects wait.
 constexpr uint32_t kAimed = 15, kAimedOf = 16;
@@ -54,8 +54,8 @@ float cutSegments(const SceneTables& scene, const ObjectEntry& object,
 
 }  // namespace
 
-// Once more after it is quiet: pictures may be seconds apart. What has a border is drawn refined
-// from the first picture on.
+// Once more after it is quiet: pictures may be seconds apart. An object with a border is drawn
+// refined from the first picture on.
 bool refines(const ObjectEntry& object) noexcept {
     return object.live && object.refine.on && !object.refine.extendedPlus1 &&
            (object.refine.border || double(object.refine.quietTick) > object.refine.turnTick);
@@ -246,7 +246,7 @@ bool RefineRenderer::chooseDue(BackendState& s, double now) noexcept {
     };
     for (const uint32_t i : s.scene.awake) any = any || due(s.scene.objects[i]);
     if (!any) return false;
-    // Full ones are compared with what has no turns.
+    // At full detail all are refined, for comparisons with methods that refine in each frame.
     for (const uint32_t i : s.scene.awake)
         s.scene.objects[i].refine.due =
             refines(s.scene.objects[i]) && (full || due(s.scene.objects[i]));
@@ -263,7 +263,7 @@ void RefineRenderer::turn(const BackendState& s, ObjectEntry& object, double now
     const float segments = cutSegments(s.scene, object, record);
     const bool cut = segments > (use.cut ? kCutTo : kCutFrom);
     const bool perPixelHoles = cut && hasPerPixelHoles(object);
-    // What was cut is emitted again.
+    // Triangles that were cut are emitted again.
     const bool was = use.cut && (!cut || (perPixelHoles && !use.perPixelHoles));
     record.flags |= (was ? kRefineIsWhole : 0) | (cut ? kRefineIsCut : 0) |
                     (perPixelHoles ? kRefineHasPerPixelHoles : 0);
@@ -368,7 +368,7 @@ vec4 RefineRenderer::eyeFor(const BackendState& s, const ObjectEntry& object) co
     return best;
 }
 
-// Whether what it shows may have changed by so much that it shows, since it was last refined.
+// Whether it may have changed visibly since it was last refined.
 bool RefineRenderer::isDue(const BackendState& s, const ObjectEntry& object,
                            const RefineObject& record, double now) const noexcept {
     const RefineUse& use = object.refine;
@@ -416,7 +416,7 @@ RefineObject RefineRenderer::recordOf(const BackendState& s, const ObjectEntry& 
     r.inner = use.inner;
     r.cuts = use.cuts.first();
     r.cutTriangles = use.cuts.units() / 3;
-    // A wall is gone when it looks gone.
+    // A wall disappears when it looks burnt through.
     const auto seconds = [&](uint32_t m) {
         const BurnMaterial& material = object.materials[m];
         const bool opens = material.holeTicks != 0 && !(object.record.flags & kObjectNoHoles);

@@ -42,7 +42,7 @@ struct RefineUse {  // an object's own
     uint32_t extendedPlus1 = 0;  // an extension refines it: its number there
     // `thick`: with an inner skin, where the mesh has an inside.
     void allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last);
-    // Sets how far the last frame that refined the object has brought what draws show of it.
+    // Sets the parts of a draw that follow the object's last refinement.
     void show(DrawItem& item) const noexcept;
 };
 

@@ -1,4 +1,4 @@
-// Restores objects of a snapshot: every object is created again, what the images hold is copied
+// Restores objects of a snapshot: every object is created again, the images' content is copied
 // over that, and the tiles join their lists. All of it is recorded with the next frame.
 #include "gpu/vk/backend_state.h"
 
@@ -8,7 +8,7 @@
 namespace fw::gpu::vk {
 namespace {
 
-// What was wetted or put out shows in looks of its own.
+// Whether some texel is wet or was put out, which shows.
 bool showsWater(const ObjectImage& image) noexcept {
     const auto wet = [](uint32_t t) { return t == kWet || t == kOut || t == kOutWet; };
     return std::any_of(image.ticks.begin(), image.ticks.end(), wet) ||
@@ -70,7 +70,7 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     UploadGuard staged(scene.restores);
     for (const RestoredObject& one : restored) stageImage(scene, one.image);
     staged.keep();
-    scene.restores.dropFirst(before);  // no frame recorded those, and none will
+    scene.restores.dropFirst(before);  // no frame will record those
     scene.restoredObjects.clear();
     for (uint32_t i = 0; i < scene.objects.size(); ++i) {
         if (!scene.objects[i].live) continue;

@@ -45,7 +45,7 @@ struct ObjectEntry {
     bool live = false;
     bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
     bool resetDue = false;                             // no frame has recorded it yet
-    bool inner = false;  // what faces away is drawn on the mesh's inner skin
+    bool inner = false;  // its back faces are drawn on the mesh's inner skin
     BurnLifecycle burn;
     uint64_t seenFrame = 0;  // ring frame whose view last showed it; kObjectUnseen: long ago
     bool turns = false;      // in this frame it comes into view, or leaves it
@@ -58,7 +58,7 @@ struct ObjectEntry {
     uint32_t extensionParity = 0;
     DeformUse deforms;           // none if `shown` is empty
     BufferRange shown, soft;     // its shown vertices; of those with a solver
-    float shape[3] = {1, 1, 1};  // what its mesh was stretched by
+    float shape[3] = {1, 1, 1};  // by which its mesh was stretched
     // Cold data: not read for sleeping objects, so it is stored last.
     DeformObject deform{};
     BurnMaterial materials[kMaterialsPerObject]{};
@@ -113,7 +113,7 @@ struct SceneTables {
     core::SlotSet awake;
     std::pmr::vector<ImageEntry> images;
     ImageEntry white, lookTextures, profiles;
-    ImageEntry books;  // the flipbooks; not live: there are none
+    ImageEntry flipbooks;  // not live: there are none
     UploadQueue uploads;
     // For the next frame: the content of restored objects, which replaces that of new ones.
     UploadQueue restores;

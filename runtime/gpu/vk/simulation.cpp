@@ -1,5 +1,6 @@
 #include "gpu/vk/simulation.h"
 
+#include "core/assert.h"
 #include "gpu/vk/frame_needs.h"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ void markObjectOfEvent(BackendState& s, const TexelEvent& event, uint32_t now) {
     s.surfaces.update(s, event.object, true);
 }
 
-// Uploads what step `planned` brings. `first`: the plan's first; `iterate`: its front may move.
+// Uploads the changes of step `planned`. `first`: the plan's first; `iterate`: its front may move.
 StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planned,
                   const FrameNeeds& needs, bool first, bool iterate, FrameRecorder& recorder) {
     StepRecord step;
@@ -154,6 +155,8 @@ void recordSteps(BackendState& s, const FramePlan& plan, const FrameNeeds& needs
         s.simulation.burnWalks += step.reduce ? 1 : 0;
         s.simulation.hotWalks += step.heat ? 1 : 0;
     }
+    FW_ASSERT(s.simulation.lists.row < s.buffers.capacity(kPoolIterations), "row %u",
+              s.simulation.lists.row);
     layout.rows = s.simulation.lists.row;
     layout.burnParity = s.simulation.lists.burnParity;
     layout.hotParity = s.simulation.lists.hotParity;
@@ -172,8 +175,8 @@ void recordForgetting(BackendState& s, FrameRecorder& recorder) {
     }
 }
 
-// Burnt pieces that lost their hold: a part of the tiles each frame, in turn, from the first object
-// that fire came to up to the last one.
+// Burnt pieces that lost their hold: a part of the tiles each frame, round-robin, from the first
+// object that fire came to up to the last one.
 void recordFalling(BackendState& s, const FramePlan& plan, bool burning, FrameRecorder& recorder) {
     constexpr uint32_t kMaxTiles = 16384;
     uint32_t begin = kNoneTexel, end = 0;
@@ -187,7 +190,7 @@ void recordFalling(BackendState& s, const FramePlan& plan, bool burning, FrameRe
             if (material.holeTicks) latest = std::max(latest, material.baseColor.w);
     }
     if (burning) {
-        // After the last flame: until all is gone, and as long as it takes to notice.
+        // After the last flame: until all holes are open, and until readbacks say so.
         s.simulation.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
         if (latest == 0) return;
     }
@@ -201,8 +204,8 @@ void recordFalling(BackendState& s, const FramePlan& plan, bool burning, FrameRe
     recordSupport(recorder, plan.endTick, {first, count, ticks});
 }
 
-// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
-// than hides where that part ends. Where nobody looks it is laid a few times a second.
+// Soot above this frame's flames: a part of the tiles each frame, round-robin, with so little soot
+// that the border of a part does not show. Without a view the pass runs a few times a second.
 TileShare SimulationState::sootShare(uint32_t tiles, uint32_t endTick, bool looked) noexcept {
     constexpr uint32_t kMaxTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
     const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;

@@ -24,7 +24,7 @@ struct SimulationState {
     bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
     uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
     uint32_t supportFirst = 0;             // tile that the next `support` begins at
-    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
+    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; tick of the last pass
     uint32_t predictTick = 0;              // of the last round of predictions
     uint32_t shownTick = 0;                // tick of the state that draws show
     uint32_t links = 0, occluders = 0;     // of the last exchange update
@@ -43,14 +43,14 @@ void recordFalling(BackendState& s, const FramePlan& plan, bool burning, FrameRe
 void recordForgetting(BackendState& s, FrameRecorder& recorder);
 
 // visibility.cpp
-// In ring frame `frame` a view of `height` px shows what it shows.
+// Marks the objects that a view of `height` px shows in ring frame `frame`.
 void markVisible(BackendState& s, const FwView& view, float height, uint64_t frame) noexcept;
 // Which objects come into view or leave it with the frame: marks those, and what they need.
 void addSeenNeeds(BackendState& s, FrameNeeds& needs);
 // Whether a frame's predictions are due: with all detail, always.
 [[nodiscard]] bool predictsNow(const BackendState& s, const FrameNeeds& needs,
                                uint32_t endTick) noexcept;
-// Arrival ahead of the front: what no view shows is not predicted.
+// Arrival ahead of the front, of the objects that some view shows.
 void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& recorder);
 
 }  // namespace fw::gpu::vk

@@ -7,7 +7,7 @@ namespace fw::gpu::vk {
 
 void FrameTimers::create(Device& device) {
     if (!device.timestamps || pool_) return;
-    auto info = typed<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+    Typed<VkQueryPoolCreateInfo> info;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = kMaxSpans * 2;
     pool_ = device.create(device.table.CreateQueryPool, info, "vkCreateQueryPool");
@@ -26,7 +26,7 @@ void FrameTimers::reset(const Device& device, VkCommandBuffer commands) {
 
 void FrameTimers::begin(const Device& device, VkCommandBuffer commands, const char* name) {
     if (device.debugUtils && device.table.CmdBeginDebugUtilsLabelEXT) {
-        auto label = typed<VkDebugUtilsLabelEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT);
+        Typed<VkDebugUtilsLabelEXT> label;
         label.pLabelName = name;
         device.table.CmdBeginDebugUtilsLabelEXT(commands, &label);
     }

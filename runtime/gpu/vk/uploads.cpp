@@ -19,8 +19,8 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
     // Draws of earlier frames may still read a layer that gets other texels.
     constexpr VkPipelineStageFlags kReads =
         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
-    vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT | kReads,
-                          VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+    recordBarriers(vk, commands, VK_PIPELINE_STAGE_TRANSFER_BIT | kReads,
+                   VK_PIPELINE_STAGE_TRANSFER_BIT, {&barrier, 1});
     uint64_t at = 0;
     for (uint32_t layer = 0; layer < upload.layers; ++layer)
         for (uint32_t mip = 0; mip < upload.mips; ++mip) {
@@ -39,9 +39,8 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
     barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
     barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                          VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | kReads, 0, 0, nullptr, 0, nullptr,
-                          1, &barrier);
+    recordBarriers(vk, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                   VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | kReads, {&barrier, 1});
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ class PassRecorder {
           objects_(state.context.pipelines.draw(pass)),
           layout_(objects_.layout) {}
 
-    // The pipeline and what all its draws share. A flame at a time has set 0 bound with it.
+    // The pipeline and the sets that all its draws share. Draws of single flames bind set 0.
     void bind(VkPipeline pipeline, const HostImages& host) {
         const Table& vk = s_.device.table;
         vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
@@ -33,11 +33,9 @@ class PassRecorder {
         const bool eachFlame = std::any_of(uses.begin(), uses.end(), [](const Use& use) {
             return use.resource == FW_BIND_VOLUMES;
         });
-        if (!eachFlame && !uses.empty()) {
-            const VkDescriptorSet set = s_.sets.draw(number_, s_.targets.drawnView);
-            vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
-                                     &set, objects_.declared.usesView() ? 1 : 0, &viewOffset_);
-        }
+        if (!eachFlame && !uses.empty())
+            bindSet(0, s_.sets.draw(number_, s_.targets.drawnView),
+                    std::span(&viewOffset_, objects_.declared.usesView() ? 1 : 0));
         bindTextures(1, pass_.textures1, host);
         bindTextures(2, pass_.textures2, host);
         if (pass_.softShader && host.depth) bindSet(3, host.depth);
@@ -112,16 +110,12 @@ class PassRecorder {
                          sizeof(VkDrawIndirectCommand));
     }
     void bindFor(const DrawItem& item, const void* push) {
-        const Table& vk = s_.device.table;
-        VkDescriptorSet set = s_.scene.white.set.set;
-        if (item.image && item.image - 1 < s_.scene.images.size() &&
-            s_.scene.images[item.image - 1].live)
-            set = s_.scene.images[item.image - 1].set.set;
-        if (set != bound_) {
-            vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1,
-                                     &set, 0, nullptr);
-            bound_ = set;
-        }
+        const auto& images = s_.scene.images;
+        const bool shows =
+            item.image && item.image - 1 < images.size() && images[item.image - 1].live;
+        const ImageEntry& image = shows ? images[item.image - 1] : s_.scene.white;
+        if (image.set.set != bound_) bindSet(1, image.set.set);
+        bound_ = image.set.set;
         pushConstants(push);
     }
     // Of ordinary items all is bound from the first vertex on, of one with shown vertices of its
@@ -147,9 +141,7 @@ class PassRecorder {
     void drawVolume(uint32_t flame, const void* push, uint32_t vertices, uint32_t instances) {
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{viewOffset_, flame * kVolumeFlameBytes};
-        const VkDescriptorSet set = s_.sets.draw(number_, s_.targets.drawnView);
-        s_.device.table.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_,
-                                              0, 1, &set, uint32_t(offsets.size()), offsets.data());
+        bindSet(0, s_.sets.draw(number_, s_.targets.drawnView), offsets);
         drawVertices(push, vertices, instances);
     }
     void drawListed(uint32_t resource, uint64_t offset, const void* push) {
@@ -163,9 +155,11 @@ class PassRecorder {
     }
 
  private:
-    void bindSet(uint32_t place, VkDescriptorSet set) {
+    void bindSet(uint32_t place, VkDescriptorSet set, std::span<const uint32_t> offsets = {}) {
+        FW_ASSERT(set, "set %u of pass %s", place, pass_.name);
         s_.device.table.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_,
-                                              place, 1, &set, 0, nullptr);
+                                              place, 1, &set, uint32_t(offsets.size()),
+                                              offsets.data());
     }
     void bindTextures(uint32_t place, Textures textures, const HostImages& host) {
         switch (textures) {
@@ -173,7 +167,7 @@ class PassRecorder {
             case Textures::ofItem:
                 return;  // bound with each item
             case Textures::flipbooks:
-                return bindSet(place, s_.scene.books.set.set);
+                return bindSet(place, s_.scene.flipbooks.set.set);
             case Textures::hostColor:
                 return bindSet(place, host.color);
             case Textures::looks:
@@ -402,7 +396,7 @@ void ViewDraws::record(DrawPhase phase) {
             return;
         case DrawPhase::Flames:
             return recordPass(
-                !s_.scene.books.live             ? draw::flames
+                !s_.scene.flipbooks.live         ? draw::flames
                 : s_.particles.onlyFlipbooks(s_) ? draw::flipbook_flames_only
                                                  : draw::flipbook_flames,
                 [&](PassRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); });
@@ -416,10 +410,11 @@ void ViewDraws::record(DrawPhase phase) {
                 recorder.drawVertices(&push, 6 * push.tilesX * push.tilesY);
             });
         case DrawPhase::Sparks:
-            return recordPass(s_.scene.books.live ? draw::half_flipbook_sparks : draw::half_sparks,
-                              [&](PassRecorder& recorder) {
-                                  recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameEmissiveDraw * 4);
-                              });
+            return recordPass(
+                s_.scene.flipbooks.live ? draw::half_flipbook_sparks : draw::half_sparks,
+                [&](PassRecorder& recorder) {
+                    recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameEmissiveDraw * 4);
+                });
         case DrawPhase::Transparency:
             return recordPass(draw::transparency, [&](PassRecorder& recorder) {
                 const float share = s_.targets.transparency;
@@ -464,7 +459,7 @@ void ViewDraws::recordVolumes(const VolumeRun& run) {
         for (uint32_t i = run.first; i < run.first + run.count; ++i) {
             switch (run.pass) {
                 case draw::volume_impostor:
-                    recorder.drawVertices(&march_->cards[i], kVolumeSplitVertices);
+                    recorder.drawVertices(&march_->impostors[i], kVolumeSplitVertices);
                     break;
                 case draw::volume_composite: {
                     const MarchedVolume& one = march_->items[i];

@@ -13,7 +13,7 @@ struct BackendState;
 struct HalfImages {
     VkFormat format = VK_FORMAT_UNDEFINED;       // of colour
     uint32_t width = 0, height = 0, tilesY = 0;  // texels; 0: none
-    Image color;  // premultiplied, encoded as its target: what is soft of a view
+    Image color;  // soft effects of a view, premultiplied, encoded as its target
     Image depth;  // the host's, and below it by tile whether it shows anything
     ImageSet colorSet, depthSet;
     VkFramebuffer colorBuffer = VK_NULL_HANDLE, depthBuffer = VK_NULL_HANDLE;
@@ -21,15 +21,15 @@ struct HalfImages {
     bool fresh = true;       // depth has no layout yet
 };
 
-// Which of a view's draws: all; or first what is soft, at half resolution, then the rest with that
-// over it.
+// Which of a view's draws: all; or first the soft effects, at half resolution, then the rest, with
+// those over it.
 enum class DrawPart : uint8_t { all, half, over };
 
 // Sets with images that a view's draws read, or null.
 struct HostImages {
     VkDescriptorSet depth = VK_NULL_HANDLE;  // the host's, of half resolution where they draw there
-    VkDescriptorSet color = VK_NULL_HANDLE;  // a copy of what the host's target holds
-    const HalfImages* half = nullptr;        // what was drawn at half resolution
+    VkDescriptorSet color = VK_NULL_HANDLE;  // a copy of the host's target
+    const HalfImages* half = nullptr;        // the soft effects that were drawn at half resolution
 };
 
 // A composite's framebuffer over images that the host keeps (FW_COMPOSITE_KEEP).
@@ -39,7 +39,6 @@ struct KeptFramebuffer {
     VkImageView color = VK_NULL_HANDLE, depth = VK_NULL_HANDLE;
     uint32_t width = 0, height = 0;
     uint64_t lastFrame = 0;  // that may use it
-    bool dropped = false;    // destroyed once that frame is done
 };
 
 // Draws that are recorded: where, and into which images.
@@ -59,17 +58,13 @@ void recordDraws(BackendState& s, FrameInFlight& slot, VkCommandBuffer commands,
 void setViewport(const BackendState& s, VkCommandBuffer commands,
                  const VkViewport& viewport) noexcept;
 
-// composite.cpp
-// All framebuffers that are kept, now.
-void destroyFramebuffers(BackendState& s) noexcept;
-
 // half_resolution.cpp
-// Outside any pass: what is soft of a view, in images of half resolution. Null: nothing is.
+// Outside any pass: a view's soft effects, into images of half resolution. Null: there are none.
 HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer commands,
                        const Target& target, const FwView& view, const VkViewport& viewport,
                        const HostImages& host);
 // For the view that was last pushed.
 [[nodiscard]] HalfPush halfPushFor(const BackendState& s, const VkViewport& viewport) noexcept;
-void destroyHalf(BackendState& s, HalfImages& half) noexcept;  // now
+void dropHalf(BackendState& s, HalfImages& half) noexcept;  // once its last frame is done
 
 }  // namespace fw::gpu::vk

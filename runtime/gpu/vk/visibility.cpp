@@ -12,21 +12,21 @@ namespace {
 // Frames that an object is still predicted after a view showed it: one that looks around comes
 // back.
 constexpr uint64_t kSeenFrames = 64;
-constexpr uint64_t kIdleTurns = 16;  // what no fire reached is looked for once in so many frames
+constexpr uint64_t kIdleTurns = 16;  // unburnt objects are checked once in so many frames
 static_assert(kIdleTurns < kSeenFrames);
 constexpr float kSeenRoom = 1.5f;   // of its bounds: it deforms, and the view turns
-constexpr float kMinPixels = 3.0f;  // half as much across shows nothing of what lies ahead
+constexpr float kMinPixels = 3.0f;  // a smaller radius does not show arrival ahead of the front
 constexpr float kAnyHeight = 1080;  // px, before anything was drawn
 // More rings of a frame in which an object comes into view or catches fire, which would end in
 // steps of whole texels: the next ones add to them. A picture by itself has no next frame, and
 // takes what there is to see, up to so many.
 constexpr uint32_t kRingsOfFrame = 8, kRingsOfPicture = 96;
 // How long predictions may wait where detail is short: ticks, with no triangles left, and texels
-// that fire crosses meanwhile, as a round brings a ring. What is known stays, and its age goes on.
+// that fire crosses meanwhile, as a round brings a ring. Known predictions stay, and age.
 constexpr double kLongestPause = kTicksPerSecond / 10.0, kCrossedInPause = 0.6;
 
 struct Sphere {
-    glm::vec3 middle;  // m, from the eye
+    glm::vec3 middle;  // m, from the camera
     float radius;      // m
 };
 
@@ -74,7 +74,7 @@ void markVisible(BackendState& s, const FwView& view, float height, uint64_t fra
     const ViewParams params = s.paramsOf(view, height, kAnyHeight);
     const auto lookAt = [&](ObjectEntry& object) {
         if (!object.live || object.seenFrame == frame) return;
-        // A host moves the vertices of what is skinned where it likes.
+        // Bounds of skinned objects are not known: the host moves their vertices.
         if (object.deforms.skinPlus1 == 0 &&
             !shows(params, sphereOf(object, *s.scene.meshOf(object).domain, params.eye)))
             return;
@@ -120,8 +120,8 @@ void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& re
     s.simulation.predictTick = plan.endTick;
     const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
     uint32_t rings = 0;
-    bool seen =
-        lately(s.simulation.seenFrame, s.open.ringFrame);  // what others lit is known only later
+    bool seen = lately(s.simulation.seenFrame,
+                       s.open.ringFrame);  // objects that others lit are known only later
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
         uint32_t& flags = object.record.flags;

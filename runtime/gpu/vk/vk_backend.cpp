@@ -140,17 +140,17 @@ BackendState::~BackendState() { destroyAll(); }
 
 void BackendState::destroyAll() noexcept {
     for (ImageEntry& entry : scene.images) destroyImage(*this, entry);
-    for (ImageEntry* entry : {&scene.white, &scene.lookTextures, &scene.profiles, &scene.books})
+    for (ImageEntry* entry : {&scene.white, &scene.lookTextures, &scene.profiles, &scene.flipbooks})
         destroyImage(*this, *entry);
     for (FrameInFlight& slot : ring.slots()) {
         deviceMemory.destroy(slot.upload);
         deviceMemory.destroy(slot.readback);
         slot.timers.destroy(device);
-        ring.dropFramebuffers(slot);
         device.destroy(device.table.DestroyDescriptorPool, slot.hostPool);
     }
-    destroyFramebuffers(*this);
-    for (HalfImages& half : targets.halves) destroyHalf(*this, half);
+    for (KeptFramebuffer& one : targets.framebuffers)
+        retired.push(one.lastFrame, {.framebuffer = one.handle});
+    for (HalfImages& half : targets.halves) dropHalf(*this, half);
     deviceMemory.destroy(views);
     destroyOwn(*this);
 }
@@ -318,8 +318,8 @@ std::span<const PassTime> VkBackend::passTimes() { return state_->results.times;
 void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->buffers.rows(out); }
 uint32_t VkBackend::quadsShown() const noexcept { return state_->particles.quadsShown; }
 uint64_t VkBackend::detailBytes() const noexcept { return state_->flames.detailBytes(*state_); }
-void VkBackend::setTileFlipbooks(uint32_t books) noexcept {
-    state_->particles.flameFlipbooks = books;
+void VkBackend::setTileFlipbooks(uint32_t flipbooks) noexcept {
+    state_->particles.flameFlipbooks = flipbooks;
 }
 
 }  // namespace fw::gpu::vk

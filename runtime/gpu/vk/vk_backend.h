@@ -32,7 +32,7 @@ class Context {
 
     // By component, of all worlds together, and "blocks". [any]
     void memoryRows(std::pmr::vector<MemoryRow>& out) const;
-    // FW_OUTPUT_AUTO: it is not known what the format asks for. [any]
+    // FW_OUTPUT_AUTO: the format does not say. [any]
     [[nodiscard]] static FwOutputEncoding encodingOf(VkFormat color) noexcept;
     // As fwTarget_IsReady. Throws FW_ERROR_STALE_ID. [any]
     bool targetReady(FwTargetId id, FwPipelineProgress& progress);
@@ -41,7 +41,7 @@ class Context {
     // All of FwContextInfo but backend and cpuMemoryUsed. [any]
     void fillInfo(FwContextInfo& info) const noexcept;
     [[nodiscard]] bool ownDevice() const noexcept;
-    // What a host may enable for us; structSize stays. [any]
+    // Extensions and features that a host may enable for us; structSize stays. [any]
     static void requirements(FwVulkanRequirements& requirements) noexcept;
 
     struct State;
@@ -73,7 +73,7 @@ struct WorldLimits {
 //               endOutside();
 //               recordInside(...) / recordComposite(...)         any number of times, or none
 // Own device:   beginOwn(); run(plan); endOwn();                 submits and waits
-//               renderOffscreen(def);                            what the world looks like now
+//               renderOffscreen(def);                            a picture of the present state
 // cancelOutside() after a begin whose run threw; nothing was recorded then.
 class VkBackend final : public Backend {
  public:
@@ -104,7 +104,7 @@ class VkBackend final : public Backend {
     void setFireProfile(uint32_t slot, std::span<const uint32_t> texels) override;
     void setFlipbooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
                       std::span<const uint32_t> words) override;
-    void setTileFlipbooks(uint32_t books) noexcept override;
+    void setTileFlipbooks(uint32_t flipbooks) noexcept override;
     void createField(uint32_t slot, const FieldRules& rules,
                      std::span<const uint8_t> masks) override;
     void destroyField(uint32_t slot) noexcept override;

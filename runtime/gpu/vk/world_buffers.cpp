@@ -417,7 +417,7 @@ bool WorldBuffers::recordMoves(const Table& table, VkCommandBuffer commands, uin
         if (!slot.before.handle) continue;
         const VkBufferCopy all{0, 0, std::min(slot.before.size, slot.now.size)};
         table.CmdCopyBuffer(commands, slot.before.handle, slot.now.handle, 1, &all);
-        retired_.push(frameIndex, slot.before);  // room was reserved by resize
+        retired_.push(frameIndex, slot.before);  // resize reserved for it
         moved = true;
     }
     movesPending_ = false;

@@ -2,6 +2,7 @@
 // vertices ...). A full pool doubles all of its buffers: new ones now, the old content is copied
 // when the next frame is recorded. Not staging, not readback.
 #pragma once
+#include "core/assert.h"
 #include "core/growth.h"
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
@@ -61,7 +62,7 @@ enum BufferPool : uint32_t {
     kPoolVolumeRays,       // words, of a view
     kPoolEmitters,         // fire emitters, per frame
     kPoolEmitterGroups,    // per frame
-    kPoolSparks,           // who throws sparks, per frame
+    kPoolSparks,           // sources of sparks, per frame
     kPoolParticles,        // of all emitters
     kPoolFlames,           // quads of flames and particles, per frame
     kPoolFields,           // field slots
@@ -98,7 +99,7 @@ struct BufferRow {
 struct WorldSizes {       // of the fixed buffers
     uint32_t lights = 1;  // records
     uint32_t flames = 1;
-    bool exact = false;  // buffers have no room to spare: see WorldLimits::exactBuffers
+    bool exact = false;  // buffers have no spare capacity: see WorldLimits::exactBuffers
 };
 
 // Resources to free together once the GPU is done with a frame.
@@ -185,7 +186,10 @@ class WorldBuffers {
     // Frees what such a view has once frame `lastFrame` is done. May throw, and then did nothing.
     void dropView(uint32_t view, uint64_t lastFrame);
 
-    [[nodiscard]] const Buffer& buffer(uint32_t resource) const { return slots_[resource].now; }
+    [[nodiscard]] const Buffer& buffer(uint32_t resource) const {
+        FW_ASSERT(resource < kResourceCount, "resource %u", resource);
+        return slots_[resource].now;
+    }
     [[nodiscard]] uint32_t capacity(BufferPool pool) const {
         return uint32_t(pools_[pool].capacity());
     }
