@@ -72,7 +72,7 @@ void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeS
     march.slabs = 1;
     march.intervals = draw.intervals;
     march.tilesX = impostor.tilesX;
-    march.cells = impostor.tilesX * impostor.tilesY * kMarchTileSide * kMarchTileSide;
+    march.pixels = impostor.tilesX * impostor.tilesY * kMarchTileSide * kMarchTileSide;
     march.tiles = slot * kImpostorWords;
     march.samples = march.tiles + kMaxImpostorTiles * kMarchTileWords;
     march.encoding = screen.encoding;
