@@ -62,8 +62,12 @@ template <class Stream, class S>
 void visitStatus(Stream& stream, S& s) {
     visitNumbers(stream, s.request, s.loaded, s.next, s.step, s.answered, s.state, s.base, s.came,
                  s.runs.count);
-    if (s.runs.count > kMaxRuns)
-        core::failData("The packet's status has %u runs of records.", uint32_t(s.runs.count));
+    if constexpr (Stream::kReads)
+        if (s.runs.count > kMaxRuns || stream.left() != s.runs.count * 2 * sizeof(uint16_t))
+            core::failData(
+                "The packet's status has %u runs of records in %zu bytes; a status has "
+                "at most %u, of 4 bytes each.",
+                uint32_t(s.runs.count), stream.left(), uint32_t(kMaxRuns));
     uint32_t at = s.next;
     for (uint16_t i = 0; i < s.runs.count; ++i) {
         auto& run = s.runs.list[i];

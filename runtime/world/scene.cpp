@@ -468,7 +468,7 @@ void Scene::shiftOrigin(const double (&by)[3]) noexcept {
     }
 }
 
-void Scene::forgetObject(const Object& object) noexcept {
+void Scene::removeObject(const Object& object) noexcept {
     countImages(object.data, false);
     FW_ASSERT(meshes.at(object.data.meshSlot)->users > 0 && texels >= object.texels, "mesh %u",
               object.data.meshSlot);

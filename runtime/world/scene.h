@@ -85,7 +85,7 @@ class Scene {
                                  const components::BurnableMesh& object) const;
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
     void countFuel(const Object& object, bool more) noexcept;
-    void forgetObject(const Object& object) noexcept;  // that goes
+    void removeObject(const Object& object) noexcept;  // that goes
     void reserveSlots();                               // for an object more; throws std::bad_alloc
     void shiftOrigin(const double (&by)[3]) noexcept;
     void checkShift(const double (&by)[3]) const;  // throws

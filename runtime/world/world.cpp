@@ -230,6 +230,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     eachSystem([&](auto& system) {
         if constexpr (requires { system.forgetObject(object); }) system.forgetObject(object);
     });
+    scene_.removeObject(object);
     memoryCounts_.objects -= object.memoryBytes;
     context_.backend.destroyObject(slot);
     scene_.objects.destroy(id);

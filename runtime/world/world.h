@@ -92,8 +92,8 @@ class World {
     // Visits the scene and all systems whose places move and that know of objects.
     template <class Visit>
     void eachSystem(const Visit& visit) {
-        visit(wind_), visit(rooms_), visit(exchange_), visit(burn_), visit(flames_);
-        visit(emitters_), visit(fields_), visit(lights_), visit(queries_), visit(scene_);
+        visit(scene_), visit(burn_), visit(emitters_), visit(queries_), visit(exchange_);
+        visit(flames_), visit(fields_), visit(wind_), visit(rooms_), visit(lights_);
     }
     // At each exchange up to a tick: fires, jets and fields address the objects that they reach.
     void actOnObjects(uint64_t end);

@@ -368,7 +368,7 @@ TEST(ShiftOrigin, LoadsASaveWithADistantOrigin) {
     Bytes bytes = saveOf(w.world);
     const double origin[3] = {512, 0, 64}, far[3] = {1e9, 0, -1e9};
     const auto* begin = reinterpret_cast<const unsigned char*>(origin);
-    const auto at = std::find_end(bytes.begin(), bytes.end(), begin, begin + sizeof origin);
+    const auto at = std::search(bytes.begin(), bytes.end(), begin, begin + sizeof origin);
     ASSERT_NE(bytes.end(), at);
     std::memcpy(&*at, far, sizeof far);
     signSave(bytes);
