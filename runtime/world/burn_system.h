@@ -163,7 +163,6 @@ class BurnSystem {
 
     // ignite.cpp
     uint32_t eventTick(float delay) const;
-    uint32_t igniteAt(const FwIgnitionDef& def, uint32_t tick);
     void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     [[nodiscard]] bool lightsSomething(size_t first) const noexcept;

@@ -215,14 +215,6 @@ uint32_t BurnSystem::igniteObject(Object& object, const FwIgnitionDef& def, uint
 uint32_t BurnSystem::ignite(const FwIgnitionDef& def, bool* acts) {
     context_.recorder.mayChange();
     checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
-    splashes_.clear();
-    const size_t before = state_.pending.size();
-    const uint32_t texels = igniteAt(def, eventTick(def.delay));
-    if (acts) *acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
-    return texels;
-}
-
-uint32_t BurnSystem::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
     components::checkWhole(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
     checkLengths(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
     checkLength(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
@@ -230,6 +222,8 @@ uint32_t BurnSystem::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
     for (uint32_t i = 0; i < 2; ++i)
         if (def.reserved[i] != 0)
             core::refuse("FwIgnitionDef::reserved[%u] is %u; it is zero.", i, def.reserved[i]);
+    splashes_.clear();
+    const uint32_t tick = eventTick(def.delay);
     const size_t before = state_.pending.size();
     try {
         uint32_t texels = 0;
@@ -239,6 +233,7 @@ uint32_t BurnSystem::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
             for (const uint32_t slot : scene_.objectsNear(def.position, def.radius))
                 texels += igniteObject(scene_.objectAt(slot), def, tick);
         recordTexels(before);
+        if (acts) *acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
         return texels;
     } catch (...) {
         state_.pending.resize(before);

@@ -90,13 +90,102 @@ vec4 carried(vec2 cell, vec2 motion, float phase, float number, float lod) {
                       vec3((cell - moved) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
 }
 
+// The field at a fragment, and the light that it has there.
+struct Surface {
+    Shown f;
+    vec4 noise;
+    float rough, ridge;  // of the noise
+    float edge;          // [0, 1], fades silhouettes and borders
+    float facing;        // cosine between `normal` and `toEye`
+    vec3 toEye, normal;
+};
+struct Light {
+    vec3 emitted, lit;
+    float alpha;
+};
+
+bool isRound() { return inField.w != 0u; }
+
+void addFire(Surface s, inout Light out_) {
+    float detail = inLook.x, body = inLook.y, strength = inLook.w;
+    // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot
+    // would only hide, and a flame would end in a stump.
+    float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
+    float d = s.f.density * (1.0 + detail * (1.5 * s.rough + 0.6 * s.ridge)) -
+              detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
+    d = max(d, 0.0);
+    // Dense parts map to the flame's axis, thin ones to its rim.
+    float rho = clamp(1.10 - 1.25 * d, 0.02, 1.2);
+    vec2 uv = vec2(rho * (1.0 / kProfileReach), y * 0.8 + 0.12);
+    vec2 profile = textureLod(profiles, vec3(clamp(uv, 0.01, 0.99), 0.0), 0.0).xy;
+    float kelvin =
+        1000.0 * profile.x + 260.0 * (min(d, 1.0) - 0.72) - 170.0 * y + 90.0 * detail * s.rough;
+    kelvin = max(kelvin, kFieldTip);
+    float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
+    float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
+    float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * s.edge;
+    out_.emitted += sootRadiance(kelvin) * kFireWhite * inTint.rgb *
+                    (kFieldWhite * view.sunColor.w * thick * share1);
+    out_.alpha += 0.55 * thick * min(share1, 1.0);
+}
+
+void addSmoke(Surface s, inout Light out_) {
+    float detail = inLook.x, body = inLook.y, strength = inLook.w;
+    float d = max(s.f.density * (1.0 + 1.3 * detail * s.rough) - 0.05 * detail, 0.0);
+    float tau = 3.4 * d * d * (isRound() ? max(s.facing, 0.0) * 1.6 : 1.0);
+    float share1 = clamp(1.0 - abs(body - 1.0), 0.0, 1.0);
+    float cover = (1.0 - exp(-tau * strength)) * s.edge * share1;
+    if (isRound()) cover *= step(0.0, s.facing);
+    // Billows tilt towards thinner density.
+    vec3 up = normalize(cross(s.normal, inAlong));
+    vec2 lean =
+        -s.f.slope * 2.2 - detail * vec2(s.noise.r - s.noise.b, s.noise.g - s.noise.r) * 0.9;
+    vec3 n = normalize(s.normal + inAlong * lean.x + up * lean.y);
+    float sky = 0.5 + 0.5 * dot(n, view.up.xyz);
+    float through = 0.25 + 0.75 * smoothstep(-0.6, 0.9, dot(n, view.sunDirection.xyz));
+    vec3 light = mix(view.ambientGround.rgb, view.ambientSky.rgb, sky) * (0.55 + 0.45 * s.f.sun) +
+                 view.sunColor.rgb * (0.42 * s.f.sun * through);
+    vec3 grey = inTint.rgb * light * 0.42;
+    out_.lit += grey * cover;
+    out_.alpha += cover;
+}
+
+void addWater(Surface s, inout Light out_) {
+    float detail = inLook.x, body = inLook.y, strength = inLook.w;
+    float d = max(s.f.density * (1.0 + 1.6 * detail * s.rough), 0.0);
+    vec3 up = normalize(cross(s.normal, inAlong));
+    // A sheet ends within a cell or two at pools and sources: full slopes there would make rims
+    // rows of white highlights.
+    vec2 wave = -s.f.slope * (isRound() ? 2.4 : 0.25) - detail * vec2(s.rough, 0.6 * s.ridge) * 1.8;
+    vec3 n = normalize(s.normal + inAlong * wave.x + up * wave.y);
+    float film = smoothstep(0.10, 0.42, d) * s.edge;
+    if (isRound())
+        film = smoothstep(0.10, 0.42, d) * step(0.0, s.facing) * smoothstep(0.0, 0.25, s.facing);
+    float facingN = clamp(dot(n, s.toEye), 0.0, 1.0);
+    float fresnel = 0.03 + 0.97 * pow(1.0 - facingN, 5.0);
+    vec3 back = reflect(-s.toEye, n);
+    vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb,
+                   smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
+    vec3 half_ = normalize(view.sunDirection.xyz + s.toEye);
+    float gleam = pow(max(dot(n, half_), 0.0), 60.0);
+    // Foam where it breaks.
+    float foam = smoothstep(
+        0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * s.ridge + 0.25 * length(s.f.motion));
+    vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
+    vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
+    float share1 = clamp(body - 1.0, 0.0, 1.0) * strength * film;
+    float cover = min(share1 * mix(0.42 + 0.2 * d, 0.85, foam), 0.97);
+    out_.lit += cover * mix(deep, 0.75 * light, foam * 0.8) +
+                share1 * (sky * fresnel + view.sunColor.rgb * (1.6 * gleam));
+    out_.alpha += cover;
+}
+
 void main() {
     Shown f = shownAt(inPlace);
     vec2 cell = inPlace * vec2(float(inField.y), float(inField.z));
     bool round_ = inField.w != 0u;
     vec3 toEye = normalize(inToEye), normal = normalize(inNormal);
     float facing = dot(normal, toEye);
-    float detail = inLook.x;
 
     // Two phases half a period apart: each is only visible while its displacement is short.
     float turns = inLook.z / kPeriod + hash(uvec3(uint(inSize.w), 1u, 1u));
@@ -118,78 +207,13 @@ void main() {
         vec2 b = min(inPlace.x, 1.0 - inPlace.x) * vec2(1.0);
         edge = smoothstep(0.0, 0.08, b.x) * smoothstep(0.0, 0.10, 1.0 - inPlace.y);
     }
-    float body = inLook.y, strength = inLook.w;
-    vec3 color = vec3(0.0), lit = vec3(0.0);
-    float alpha = 0.0;
-
-    if (kVariant <= 1u) {  // emits
-        // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot
-        // would only hide, and a flame would end in a stump.
-        float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
-        float d = f.density * (1.0 + detail * (1.5 * rough + 0.6 * ridge)) -
-                  detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
-        d = max(d, 0.0);
-        // Dense parts map to the flame's axis, thin ones to its rim.
-        float rho = clamp(1.10 - 1.25 * d, 0.02, 1.2);
-        vec2 uv = vec2(rho * (1.0 / kProfileReach), y * 0.8 + 0.12);
-        vec2 profile = textureLod(profiles, vec3(clamp(uv, 0.01, 0.99), 0.0), 0.0).xy;
-        float kelvin =
-            1000.0 * profile.x + 260.0 * (min(d, 1.0) - 0.72) - 170.0 * y + 90.0 * detail * rough;
-        kelvin = max(kelvin, kFieldTip);
-        float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
-        float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
-        float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * edge;
-        color += sootRadiance(kelvin) * kFireWhite * inTint.rgb *
-                 (kFieldWhite * view.sunColor.w * thick * share1);
-        alpha += 0.55 * thick * min(share1, 1.0);
-    }
-    if (kVariant >= 1u) {  // absorbs
-        float d = max(f.density * (1.0 + 1.3 * detail * rough) - 0.05 * detail, 0.0);
-        float tau = 3.4 * d * d * (round_ ? max(facing, 0.0) * 1.6 : 1.0);
-        float share1 = clamp(1.0 - abs(body - 1.0), 0.0, 1.0);
-        float cover = (1.0 - exp(-tau * strength)) * edge * share1;
-        if (round_) cover *= step(0.0, facing);
-        // Billows tilt towards thinner density.
-        vec3 up = normalize(cross(normal, inAlong));
-        vec2 lean = -f.slope * 2.2 - detail * vec2(noise.r - noise.b, noise.g - noise.r) * 0.9;
-        vec3 n = normalize(normal + inAlong * lean.x + up * lean.y);
-        float sky = 0.5 + 0.5 * dot(n, view.up.xyz);
-        float through = 0.25 + 0.75 * smoothstep(-0.6, 0.9, dot(n, view.sunDirection.xyz));
-        vec3 light = mix(view.ambientGround.rgb, view.ambientSky.rgb, sky) * (0.55 + 0.45 * f.sun) +
-                     view.sunColor.rgb * (0.42 * f.sun * through);
-        vec3 grey = inTint.rgb * light * 0.42;
-        lit += grey * cover;
-        alpha += cover;
-    }
-    if (kVariant == 2u) {  // refracts
-        float d = max(f.density * (1.0 + 1.6 * detail * rough), 0.0);
-        vec3 up = normalize(cross(normal, inAlong));
-        // A sheet ends within a cell or two at pools and sources: full slopes there would make rims
-        // rows of white highlights.
-        vec2 wave = -f.slope * (round_ ? 2.4 : 0.25) - detail * vec2(rough, 0.6 * ridge) * 1.8;
-        vec3 n = normalize(normal + inAlong * wave.x + up * wave.y);
-        float film = smoothstep(0.10, 0.42, d) * edge;
-        if (round_)
-            film = smoothstep(0.10, 0.42, d) * step(0.0, facing) * smoothstep(0.0, 0.25, facing);
-        float facingN = clamp(dot(n, toEye), 0.0, 1.0);
-        float fresnel = 0.03 + 0.97 * pow(1.0 - facingN, 5.0);
-        vec3 back = reflect(-toEye, n);
-        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb,
-                       smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
-        vec3 half_ = normalize(view.sunDirection.xyz + toEye);
-        float gleam = pow(max(dot(n, half_), 0.0), 60.0);
-        // Foam where it breaks.
-        float foam = smoothstep(
-            0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * ridge + 0.25 * length(f.motion));
-        vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
-        vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
-        float share1 = clamp(body - 1.0, 0.0, 1.0) * strength * film;
-        float cover = min(share1 * mix(0.42 + 0.2 * d, 0.85, foam), 0.97);
-        lit += cover * mix(deep, 0.75 * light, foam * 0.8) +
-               share1 * (sky * fresnel + view.sunColor.rgb * (1.6 * gleam));
-        alpha += cover;
-    }
-    alpha = min(alpha, 1.0);
+    Surface s = Surface(f, noise, rough, ridge, edge, facing, toEye, normal);
+    Light light = Light(vec3(0.0), vec3(0.0), 0.0);
+    if (kVariant <= 1u) addFire(s, light);
+    if (kVariant >= 1u) addSmoke(s, light);
+    if (kVariant == 2u) addWater(s, light);
+    vec3 color = light.emitted, lit = light.lit;
+    float alpha = min(light.alpha, 1.0);
 #ifdef FW_SOFT
     float soft = smoothstep(0.0, 1.0, gapToScene() / (0.2 * inSize.z));
     color *= soft;
