@@ -71,7 +71,7 @@ TEST_F(ReferenceFlags, PublishedFieldRunsTenStepsASecond) {
     field.flags = FW_FIELD_AS_PUBLISHED;
     FwParticleFieldId id{};
     ASSERT_EQ(fwWorld_CreateParticleField(world_, &field, &id), FW_OK) << lastMessage(world_);
-    run(3, 0.125f);
+    run(3, 1.0f / 32);
     for (int i = 0; i < 4; ++i) fwWorld_Step(world_, 0);  // the state comes some frames late
     FwParticleFieldState state{};
     state.structSize = sizeof state;
