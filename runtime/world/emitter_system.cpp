@@ -102,16 +102,14 @@ FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
     if (def.shape == FW_EMITTER_MESH) (void)scene_.objects.get(def.object);
     emitter.ring = std::max(components::particlesNeeded(emitter), 1u);
     emitter.first = findRing(emitter.ring);
-    const size_t groups = groups_.capacity();
     size_t needed = (emitter.ring + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
     for (const auto& ring : rings_)
         needed += (ring.second + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
-    if (groups < needed) groups_.reserve(std::max(needed, 2 * groups));
-    const size_t records = records_.capacity(), live = emitters_.live() + 1;
-    if (records < live) {
-        records_.reserve(std::max(live, 2 * records));
-        sparks_.reserve(std::max(live, 2 * records));
-    }
+    const size_t live = emitters_.live() + 1;
+    // Each by its own capacity: an earlier call may have ended between two of them.
+    core::growTo(groups_, needed);
+    core::growTo(records_, live);
+    core::growTo(sparks_, live);
     flames_.reserve(0);  // of shapes that jets are swept through
     if (components::isSwept(def)) core::growTo(probes_, live * components::kJetRays);
     if (def.flags & FW_EMITTER_IGNITES)
