@@ -94,9 +94,7 @@ class HandlePool {
         return Id{index + 1, slots_[index].generation};
     }
     // Of any number: null, or an id that every call refuses, where no value has that slot.
-    Value* findSlot(uint32_t index) noexcept {
-        return index < slots_.size() ? at(index) : nullptr;
-    }
+    Value* findSlot(uint32_t index) noexcept { return index < slots_.size() ? at(index) : nullptr; }
     const Value* findSlot(uint32_t index) const noexcept {
         return const_cast<HandlePool*>(this)->findSlot(index);
     }

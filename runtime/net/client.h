@@ -20,7 +20,7 @@ class Client {
     void update(world::World& world, float seconds);
     bool write(world::World& world, std::span<std::byte> room, uint32_t& size);
     void read(std::span<const std::byte> packet);
-    // What to do next; see fwNet_NextAction.
+    // The next action of the host; see fwNet_NextAction.
     void takeTurn(world::World& world, FwNetAction& turn);
     void fillState(world::World& world, FwNetState& state) const;
 

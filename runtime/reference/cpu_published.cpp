@@ -85,8 +85,8 @@ void publishedStep(gpu::cpu::CpuBackend::State& s, uint32_t now) noexcept {
         CpuObject& object = *owned;
         const uint32_t width = object.domain->width;
         const size_t plane = planeOf(object);
-        FW_ASSERT(object.extended.size() == 3 * plane, "%zu of %zu floats",
-                  object.extended.size(), 3 * plane);
+        FW_ASSERT(object.extended.size() == 3 * plane, "%zu of %zu floats", object.extended.size(),
+                  3 * plane);
         FW_ASSERT(object.extensionParity < 2, "parity %u", object.extensionParity);
         float* planes = object.extended.data();
         for (uint32_t y = 0; y < object.domain->height; ++y) {

@@ -184,7 +184,7 @@ class Reader : public core::Reader, public Archive<Reader> {
     std::pmr::vector<uint32_t> values_;
 };
 
-// What a file begins with. Throws where it begins otherwise.
+// Reads the head of a file; throws if its name or version differs.
 inline void readHead(core::Reader& reader, const char (&magic)[5], uint32_t version) {
     uint32_t word = 0, found = 0;
     reader.number(word);

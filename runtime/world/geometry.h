@@ -29,7 +29,7 @@ template <class Id>
     return pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
 }
 
-// What is kept of an object among a few, or a free place for it; null: all are taken.
+// Returns the entry of an object in a short list, or a free entry; null if the list is full.
 template <class Touch, size_t N, class Id>
 [[nodiscard]] Touch* touchOf(std::array<Touch, N>& touches, const Id& object) noexcept {
     Touch* free = nullptr;

@@ -59,7 +59,7 @@ void settleSources(uint slot, uint hops, bool gives, uint strength) {
     }
 }
 
-// Who lit the object, whether it may continue, its sources; wakes the objects that they may heat.
+// Settles an object: its igniter, its hold and its sources; wakes the objects that it may heat.
 void settleObject(uint slot) {
     if ((exchangeObjects[slot].flags & kExchangeLive) == 0u) return;
     ObjectCounters c = objectCounters[slot];

@@ -93,7 +93,7 @@ check_tree() {
             sed 's/$/   <- a system does not know the world/' || true
     done
 
-    # What a system needs of a later one in this order the world hands to its plan. Saves know all of
+    # The world hands to a plan the data of systems that stand later in this order. Saves know all of
     # them, none of them knows saves.
     local order=(wind room exchange burn flame emitter field light query) own k
     for file in "$tree"/runtime/world/*.cpp; do

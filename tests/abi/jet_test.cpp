@@ -252,7 +252,7 @@ TEST(Jet, StuckFuelLightsAWallAndWaterRemovesIt) {
     (void)litBy(0.9f, FW_WET);
 }
 
-// The water of a field follows from the field: a log that is played wets stuck fuel once, not twice.
+// The water of a field follows from the field, so a played log wets stuck fuel once.
 TEST(Jet, APlayedLogWetsStuckFuelAsItWas) {
     constexpr uint64_t kEnd = 3 * 4096;  // ticks
     const auto make = [](Range& r, bool wets) {

@@ -17,7 +17,7 @@ namespace {
 
 using fw::gpu::ShaderCode;
 
-// Those of the library and of the reference methods.
+// The shaders of the library and of the reference methods.
 std::vector<ShaderCode> allShaders() {
     const auto own = fw::gpu::embeddedShaders(), more = fw::gpu::extension()->shaders;
     std::vector<ShaderCode> all(own.begin(), own.end());

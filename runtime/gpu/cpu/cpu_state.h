@@ -75,7 +75,7 @@ std::span<T> copyNext(std::span<const T> from, std::span<T>& to) noexcept {
 // cpu_heat.cpp. Needs the states; makes those of wet texels wet.
 void createHeat(CpuObject& object);
 
-// What an extension does for objects with kObjectExtended.
+// Methods of an extension for objects with kObjectExtended.
 struct CpuMethods {
     void (*create)(CpuObject& object);  // fills `extended`; needs the states
     void (*event)(CpuObject& object, uint32_t texel, bool burns) noexcept;

@@ -188,7 +188,7 @@ void MarchFrame::chooseTiers() noexcept {
         // Its newest frame is this one.
         const bool ready = atlas && (atlas->key == box.key || atlas->written + 1 >= kAtlasFrames);
         requested[i] = {box.key,           box.tier, volumeWide(items_[i].draw, march_.screen),
-                    areaOf(items_[i]), ready,    atlas && atlas->shares > 1};
+                        areaOf(items_[i]), ready,    atlas && atlas->shares > 1};
         const bool extended = box.tier == core::reserved::kFireTier;
         if (extended && !extension()->showsVolumes(march_.screen.encoding))
             requested[i].requested = FW_FIRE_TIER_MARCH_LOW;

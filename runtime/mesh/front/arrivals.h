@@ -29,7 +29,8 @@ struct Arrivals {
     // Per tile: as TileState::wake, and whether `list` holds it.
     std::pmr::vector<uint32_t> wake{memory};
     std::pmr::vector<uint8_t> flags{memory};
-    std::pmr::vector<uint32_t> list{memory}, due{memory};  // tiles; `due`: of this round, run up to `next`
+    // Tiles; `due`: those of this round, run up to `next`.
+    std::pmr::vector<uint32_t> list{memory}, due{memory};
     size_t next = 0;
     uint32_t window = 0, stride = 0;  // ticks
     uint32_t now = 0;                 // first tick of the forecast
