@@ -83,13 +83,17 @@ void reduceTile(uint worldTile, uint parity) {
     vec3 world = turnNormal(objects[object].worldRow0.xyz, objects[object].worldRow1.xyz,
                             objects[object].worldRow2.xyz, n);
     float size = length(world);
+    BurnTile b;
+    b.positionArea = vec4(inWorld(object, rest), float(count) * area);
     float fire = heats ? tileFire[worldTile] : 0.0;
     power = shows && fire == 0.0 ? whole : power;  // before its first heat step
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
-    vec3 unit = size > 0.0 ? world / size : vec3(0.0);
-    burnTiles[slot] =
-        BurnTile(vec4(inWorld(object, rest), float(count) * area), vec4(unit, power * area + fire),
-                 object, tile.local, count, (age / count) << 2u);
+    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0), power * area + fire);
+    b.object = object;
+    b.tile = tile.local;
+    b.texels = count;
+    b.age = (age / count) << 2u;
+    burnTiles[slot] = b;
 }
 
 void reduceItem(uint i) {

@@ -29,7 +29,11 @@ void resetTile(uint local, uint lane) {
     gradient[at] = 0u;
     if (lane == 0u) {
         uint worldTile = objects[object].worldTileBase + local;
-        tileState[worldTile] = TileState(kNever, 0u, kNeverChanged, object);
+        // One by one: GPU-assisted validation does not check a store of a whole record.
+        tileState[worldTile].wake = kNever;
+        tileState[worldTile].flag = 0u;
+        tileState[worldTile].lastChange = kNeverChanged;
+        tileState[worldTile].object = object;
         tileHeat[worldTile] = TileHeat(0u, 0u);
         tileFire[worldTile] = 0.0;
     }

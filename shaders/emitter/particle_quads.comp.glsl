@@ -73,16 +73,19 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
     showByFlipbook(quad, particleFlipbook(e.fireFlipbooks, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
+    FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
+    smoke.axisWidth = vec4(view.up.xyz, 0.62 * size);
     // Leaves walls and stays above the ground as it grows: inside them it would end in a straight
     // line.
     place += p.hit.xyz * particleOffWall(p, e.up.xyz, size, a);
     float sunk = kPuffReach * size - (dot(place, e.up.xyz) - e.carried.w);
     place += e.up.xyz * ((e.flags & kEmitterGround) != 0u ? max(0.0, sunk) : 0.0);
-    FlameQuad smoke =
-        FlameQuad(vec4(place - view.up.xyz * (0.62 * size), 1.24 * size),
-                  vec4(view.up.xyz, 0.62 * size), particleSmoke(e, a) * t.smoke * near,
-                  0.10 * age + 5.0 * t.other, lit, (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke);
+    smoke.baseHeight = vec4(place - view.up.xyz * (0.62 * size), 1.24 * size);
+    smoke.opacity = particleSmoke(e, a) * t.smoke * near;
+    smoke.phase = 0.10 * age + 5.0 * t.other;
+    smoke.kelvin = lit;
+    smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
     showByFlipbook(smoke, particleFlipbook(e.smokeFlipbooks, 2u, seed),
                    (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;

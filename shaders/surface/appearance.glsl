@@ -286,10 +286,16 @@ Skin burningSkin(Site s, MaterialAppearance m) {
 
 // Surface without fire nearby: burningSkin's result at low cost.
 Skin freshSkin(Site s, MaterialAppearance m) {
-    vec3 albedo = soaked(s.base, m.wetDark * s.water);
-    albedo *= 1.0 - 0.25 * min(m.wetDark, 1.0) * s.water;
-    float rough = clamp(mix(s.baseRough, 0.16, s.water * wetShine(s, m)), 0.08, 1.0);
-    return Skin(albedo, rough, mix(0.04, 0.03, s.water), vec3(0.0), 1.0, 1.0, 0.0, vec2(0.0));
+    Skin o;
+    o.albedo = soaked(s.base, m.wetDark * s.water) * (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water);
+    o.rough = clamp(mix(s.baseRough, 0.16, s.water * wetShine(s, m)), 0.08, 1.0);
+    o.f0 = mix(0.04, 0.03, s.water);
+    o.emission = vec3(0.0);
+    o.occlusion = 1.0;
+    o.edge = 1.0;
+    o.sheen = 0.0;
+    o.slope = vec2(0.0);
+    return o;
 }
 
 // Wall of a hole in a thin shell: distance along the view ray, m; negative: the ray passes through.

@@ -54,8 +54,11 @@ void paintBase(vec3 color, vec4 coarse, inout Base b) {  // over woodBase
 }
 
 void paperBase(vec2 d, float pixel, bool print, vec4 coarse, vec4 fine, out Base b) {
-    b = Base(vec3((0.96 + 0.08 * fine.b) * (0.97 + 0.06 * coarse.r)), 0.85, (fine.b - 0.5) * 1.2,
-             1.0, 0.0);
+    b.factor = vec3((0.96 + 0.08 * fine.b) * (0.97 + 0.06 * coarse.r));
+    b.rough = 0.85;
+    b.delay = (fine.b - 0.5) * 1.2;
+    b.cavity = 1.0;
+    b.height = 0.0;
     if (print) {
         int column = int(floor(d.x / 0.062)), line = int(floor(d.y / 0.0042));
         float x = fract(d.x / 0.062), y = fract(d.y / 0.0042);
@@ -140,7 +143,12 @@ void strawBase(vec2 d, float pixel, out Base b) {
 
 Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coarse, vec4 fine,
                vec4 grown) {
-    Base b = Base(vec3(0.94 + 0.12 * coarse.r), 0.7, 0.0, 1.0, 0.0);
+    Base b;
+    b.factor = vec3(0.94 + 0.12 * coarse.r);
+    b.rough = 0.7;
+    b.delay = 0.0;
+    b.cavity = 1.0;
+    b.height = 0.0;
     if (kHasWood && (kind == kBaseWood || kind == kBasePaint)) woodBase(d, pixel, planks, grown, b);
     if (kHasPaint && kind == kBasePaint) paintBase(color, coarse, b);
     if (kHasSheet && (kind == kBasePaper || kind == kBasePrint))

@@ -391,8 +391,11 @@ void main() {
         vec4 texel = texture(baseImage, inTexture.zw);
         color = texel.rgb;
         cutOut = texel.a < 0.5;
-        float cavity = 0.45 + 0.55 * saturate(dot(color, vec3(0.9)) + 0.3);
-        fresh = Base(vec3(1.0), draw.colorRough.w, (fine.b - 0.5) * 1.2, cavity, 0.0);
+        fresh.factor = vec3(1.0);
+        fresh.rough = draw.colorRough.w;
+        fresh.delay = (fine.b - 0.5) * 1.2;
+        fresh.cavity = 0.45 + 0.55 * saturate(dot(color, vec3(0.9)) + 0.3);
+        fresh.height = 0.0;
     } else {
         fresh = freshBase(look.base, d, pixel, detailed, color, coarse, fine, grown);
         fresh.rough = clamp(fresh.rough + draw.colorRough.w - 0.7, 0.1, 1.0);
