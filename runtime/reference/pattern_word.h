@@ -11,18 +11,18 @@ FW_SHARED_BEGIN
 // Pattern word. Bits 0 and 6: lattice point of the right-angled corner, in steps of 2^depth from
 // corner 0 of the coarse triangle towards corners 1 and 2. Bit 12: halvings. Bit 15: points down.
 // Bit 16: coarse triangle.
-FW_SHARED_CONST uint kPatternEmpty = 0xFFFFFFFFu;  // pads a list to whole groups
-FW_SHARED_CONST uint kPatternDown = 0x8000u;
-FW_SHARED_CONST uint kPatternMaxTriangles = 65535u;  // coarse triangles
+FW_CONST uint kPatternEmpty = 0xFFFFFFFFu;  // pads a list to whole groups
+FW_CONST uint kPatternDown = 0x8000u;
+FW_CONST uint kPatternMaxTriangles = 65535u;  // coarse triangles
 
-FW_SHARED_FN uint packPatternWord(uint c1, uint c2, uint halvings, bool down) {
+FW_FN uint packPatternWord(uint c1, uint c2, uint halvings, bool down) {
     return c1 | (c2 << 6u) | (halvings << 12u) | (down ? kPatternDown : 0u);
 }
-FW_SHARED_FN uint patternHalvings(uint word) { return (word >> 12u) & 7u; }
-FW_SHARED_FN uint patternCoarse(uint word) { return word >> 16u; }
+FW_FN uint patternHalvings(uint word) { return (word >> 12u) & 7u; }
+FW_FN uint patternCoarse(uint word) { return word >> 16u; }
 
 // Lattice point k: 0..2 are the corners, 3..5 the middle of the side that starts at corner k - 3.
-FW_SHARED_FN uvec2 patternPoint(uint word, uint depth, uint k) {
+FW_FN uvec2 patternPoint(uint word, uint depth, uint k) {
     uint c1 = word & 63u, c2 = (word >> 6u) & 63u;
     uint side = 1u << (depth - patternHalvings(word)), half_ = side >> 1u;
     uint d1 = k == 1u ? side : k == 3u || k == 4u ? half_ : 0u;
@@ -32,7 +32,7 @@ FW_SHARED_FN uvec2 patternPoint(uint word, uint depth, uint k) {
 }
 
 // Draw vertex of a lattice point. All sides of the coarse triangle have the interior's depth.
-FW_SHARED_FN uint patternDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
+FW_FN uint patternDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
     uint depth = refineInteriorDepth(t.flags);
     uint c0 = (1u << depth) - c1 - c2;
     uint code = refineInside(c1, c2);
@@ -44,7 +44,7 @@ FW_SHARED_FN uint patternDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
 
 // Burn-level rule. gone: one bit for each of the six points that is burnt through. A triangle is
 // consumed if all corners are gone, or if two of its four children are. finest: it has no children.
-FW_SHARED_FN bool isPatternConsumed(uint gone, bool finest) {
+FW_FN bool isPatternConsumed(uint gone, bool finest) {
     if (finest || (gone & 7u) == 7u) return (gone & 7u) == 7u;
     uint children = ((gone & 0x29u) == 0x29u ? 1u : 0u) + ((gone & 0x1Au) == 0x1Au ? 1u : 0u) +
                     ((gone & 0x34u) == 0x34u ? 1u : 0u) + ((gone & 0x38u) == 0x38u ? 1u : 0u);
@@ -57,7 +57,7 @@ struct PatternPush {
     uint firstGroup;  // first group of the phase in the list
     float recede;     // share of a slot's reach, [0, 1)
 };
-FW_SHARED_SIZE(PatternPush, 16)
+FW_SIZE(PatternPush, 16)
 
 FW_SHARED_END
 #endif

@@ -17,8 +17,8 @@ struct SlicesPush {
     uint reserved1;
     uint reserved2;
 };
-FW_SHARED_SIZE(SlicesPush, 48)
-FW_SHARED_CONST uint kVolumeSlices = 96u;  // per flame, at most
+FW_SIZE(SlicesPush, 48)
+FW_CONST uint kVolumeSlices = 96u;  // per flame, at most
 
 FW_SHARED_END
 #endif

@@ -8,8 +8,8 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kSliceCorners = 6u;    // of a polygon, at most
-FW_SHARED_CONST uint kSliceVertices = 12u;  // of its triangle fan
+FW_CONST uint kSliceCorners = 6u;    // of a polygon, at most
+FW_CONST uint kSliceVertices = 12u;  // of its triangle fan
 
 struct SlicePoint {
     vec3 at;       // m, world
@@ -17,12 +17,12 @@ struct SlicePoint {
 };
 
 // Reach of the lattice at a node, m from the axis.
-FW_SHARED_FN float sliceReach(FlameRecord f, FlameNode a) {
+FW_FN float sliceReach(FlameRecord f, FlameNode a) {
     return flameReachAt(f, a.along.w, a.along.w, a.centre.w, a.side.w);
 }
 
 // Corner 0 to 3 of the lattice in a node's plane, in order around the axis.
-FW_SHARED_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
+FW_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
     vec3 side = vec3(a.side);
     vec3 across = cross(vec3(a.along), side);
     float u = corner == 0u || corner == 3u ? -reach : reach;
@@ -32,8 +32,8 @@ FW_SHARED_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
 
 // Corner `vertex` of the polygon cut by the plane dot(x - eye, forward) == depth out of a lattice
 // piece, in order around it. With fewer corners: the last one.
-FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec3 eye, vec3 forward,
-                                    float depth, uint vertex) {
+FW_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec3 eye, vec3 forward,
+                             float depth, uint vertex) {
     float reachA = sliceReach(f, a);
     float reachB = sliceReach(f, b);
     vec3 low[4];
@@ -95,14 +95,14 @@ FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec
 }
 
 // Polygon corner of vertex [0, kSliceVertices).
-FW_SHARED_FN uint sliceFan(uint vertex) {
+FW_FN uint sliceFan(uint vertex) {
     uint triangle = vertex / 3u;
     uint corner = vertex - 3u * triangle;
     return corner == 0u ? 0u : triangle + corner;
 }
 
 // Coordinates along the curve of a point in a piece.
-FW_SHARED_FN FlamePlace slicePlace(FlameNode a, FlameNode b, vec3 x) {
+FW_FN FlamePlace slicePlace(FlameNode a, FlameNode b, vec3 x) {
     float da = max(flamePlane(x, a), 0.0f);
     float db = min(flamePlane(x, b), 0.0f);
     return flamePlaceAt(x, a, b, da, db);

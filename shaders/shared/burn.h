@@ -105,109 +105,109 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kNoneTexel = 0xFFFFFFFFu;
+FW_CONST uint kNoneTexel = 0xFFFFFFFFu;
 // Codes of a texel's state. A value below kLiveEnd is an ignition tick: the texel is a source.
-FW_SHARED_CONST uint kNever = 0xFFFFFFFFu;   // unburnt, receptive
-FW_SHARED_CONST uint kInert = 0xFFFFFFFEu;   // cannot burn, or no texel: a barrier
-FW_SHARED_CONST uint kWet = 0xFFFFFFFDu;     // unburnt, water film: a barrier
-FW_SHARED_CONST uint kOut = 0xFFFFFFFCu;     // extinguished and dry: receptive
-FW_SHARED_CONST uint kOutWet = 0xFFFFFFFBu;  // extinguished, water film: a barrier
-FW_SHARED_CONST uint kLiveEnd = 0xFFFFFFF0u;
+FW_CONST uint kNever = 0xFFFFFFFFu;   // unburnt, receptive
+FW_CONST uint kInert = 0xFFFFFFFEu;   // cannot burn, or no texel: a barrier
+FW_CONST uint kWet = 0xFFFFFFFDu;     // unburnt, water film: a barrier
+FW_CONST uint kOut = 0xFFFFFFFCu;     // extinguished and dry: receptive
+FW_CONST uint kOutWet = 0xFFFFFFFBu;  // extinguished, water film: a barrier
+FW_CONST uint kLiveEnd = 0xFFFFFFF0u;
 
-FW_SHARED_CONST uint kTicksPerSecond = 4096u;
-FW_SHARED_CONST uint kStepTicks = 128u;      // 1/32 s
-FW_SHARED_CONST uint kHeatSteps = 4u;        // steps from one heat step to the next
-FW_SHARED_CONST uint kMaxSubsteps = 8u;
-FW_SHARED_CONST uint kMaterialsPerObject = 8u;
+FW_CONST uint kTicksPerSecond = 4096u;
+FW_CONST uint kStepTicks = 128u;      // 1/32 s
+FW_CONST uint kHeatSteps = 4u;        // steps from one heat step to the next
+FW_CONST uint kMaxSubsteps = 8u;
+FW_CONST uint kMaterialsPerObject = 8u;
 
-FW_SHARED_CONST uint kTexelReal = 0x100u;    // as mesh::TexelFlag
-FW_SHARED_CONST uint kTexelRim = 0x200u;
+FW_CONST uint kTexelReal = 0x100u;    // as mesh::TexelFlag
+FW_CONST uint kTexelRim = 0x200u;
 
 // BurnObject::flags
-FW_SHARED_CONST uint kObjectLive = 1u;
-FW_SHARED_CONST uint kObjectExtended = 2u;  // an extension burns its texels
-FW_SHARED_CONST uint kObjectTwoSided = 4u;
-FW_SHARED_CONST uint kObjectNoHoles = 8u;
-FW_SHARED_CONST uint kObjectHidden = 16u;
-FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
-FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat buffer
-FW_SHARED_CONST uint kObjectNoDamage = 128u; // burns without visible damage
-FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire follows the shown vertices
-FW_SHARED_CONST uint kObjectDepthFirst = 0x2000u;  // draws depth before colour
-FW_SHARED_CONST uint kObjectUnseen = 0x4000u;  // no view shows it: not predicted
+FW_CONST uint kObjectLive = 1u;
+FW_CONST uint kObjectExtended = 2u;  // an extension burns its texels
+FW_CONST uint kObjectTwoSided = 4u;
+FW_CONST uint kObjectNoHoles = 8u;
+FW_CONST uint kObjectHidden = 16u;
+FW_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
+FW_CONST uint kObjectHeat = 64u;      // has a heat buffer
+FW_CONST uint kObjectNoDamage = 128u; // burns without visible damage
+FW_CONST uint kObjectSkinned = 0x1000u; // its fire follows the shown vertices
+FW_CONST uint kObjectDepthFirst = 0x2000u;  // draws depth before colour
+FW_CONST uint kObjectUnseen = 0x4000u;  // no view shows it: not predicted
 // A view shows it again: prediction restarts from the burning texels.
-FW_SHARED_CONST uint kObjectShownAgain = 0x8000u;
-FW_SHARED_CONST uint kObjectRoomShift = 16u;   // 8 bits: index of its room, plus 1
+FW_CONST uint kObjectShownAgain = 0x8000u;
+FW_CONST uint kObjectRoomShift = 16u;   // 8 bits: index of its room, plus 1
 
 // TileState::flag
-FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
-FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
-FW_SHARED_CONST uint kTileLitBeside = 0x80000u;  // due only because neighbouring texels just caught
-FW_SHARED_CONST uint kTileCorrected = 0x100000u; // a texel of this run was corrected, not just lit
-FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
-FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
+FW_CONST uint kTileListed = 1u;       // in the front list
+FW_CONST uint kTileTouched = 2u;      // an input changed: due now
+FW_CONST uint kTileLitBeside = 0x80000u;  // due only because neighbouring texels just caught
+FW_CONST uint kTileCorrected = 0x100000u; // a texel of this run was corrected, not just lit
+FW_CONST uint kTileBurning = 4u;      // in the burn list
+FW_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
 // `wake` may be something other than a known arrival.
-FW_SHARED_CONST uint kTilePendingUnknown = 128u;
-FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
-FW_SHARED_CONST uint kTileWarm = 64u;        // and takes part in every heat step, see workDue
+FW_CONST uint kTilePendingUnknown = 128u;
+FW_CONST uint kTileHot = 32u;         // in the hot list
+FW_CONST uint kTileWarm = 64u;        // and takes part in every heat step, see workDue
 // Cosmetic, written by `support`: facts of the tile's texels, results, and the distance to a
 // support.
-FW_SHARED_CONST uint kTileSidesShift = 8u;   // 4 bits: the surface continues over that side
-FW_SHARED_CONST uint kTileSpent = 0x1000u;   // all its texels burn or have burnt
-FW_SHARED_CONST uint kTileGround = 0x2000u;
-FW_SHARED_CONST uint kTileMaterialShift = 14u; // 3 bits
-FW_SHARED_CONST uint kTileFacts = 0x1FF00u;
-FW_SHARED_CONST uint kTileSolid = 0x20000u;
-FW_SHARED_CONST uint kTileFalling = 0x40000u;
+FW_CONST uint kTileSidesShift = 8u;   // 4 bits: the surface continues over that side
+FW_CONST uint kTileSpent = 0x1000u;   // all its texels burn or have burnt
+FW_CONST uint kTileGround = 0x2000u;
+FW_CONST uint kTileMaterialShift = 14u; // 3 bits
+FW_CONST uint kTileFacts = 0x1FF00u;
+FW_CONST uint kTileSolid = 0x20000u;
+FW_CONST uint kTileFalling = 0x40000u;
 // Fire, heat, water or soot has shown on it; never cleared.
-FW_SHARED_CONST uint kTileMarked = 0x200000u;
-FW_SHARED_CONST uint kTileDistanceShift = 22u; // 10 bits
+FW_CONST uint kTileMarked = 0x200000u;
+FW_CONST uint kTileDistanceShift = 22u; // 10 bits
 
 // Rows of IterationCounters. The first rows belong to persistent lists. list*: indirect groups of
 // 64 tiles (burn, hot) or of 8 (predict).
-FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
-FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
-FW_SHARED_CONST uint kRowHot = 4u;           // + parity of the hot list
-FW_SHARED_CONST uint kRowExchange = 6u;      // run*: receivers; list*: embers / 64
-FW_SHARED_CONST uint kRowIteration = 7u;     // + iteration of the frame
+FW_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
+FW_CONST uint kRowPredict = 2u;       // + parity of the predict list
+FW_CONST uint kRowHot = 4u;           // + parity of the hot list
+FW_CONST uint kRowExchange = 6u;      // run*: receivers; list*: embers / 64
+FW_CONST uint kRowIteration = 7u;     // + iteration of the frame
 
 // StepPush::switches, as FwDebugSwitch
-FW_SHARED_CONST uint kSwitchDense = 1u;
-FW_SHARED_CONST uint kSwitchShuffle = 2u;
-FW_SHARED_CONST uint kSwitchNoSeamWake = 4u;
-FW_SHARED_CONST uint kSwitchWrongDependents = 8u;
-FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
-FW_SHARED_CONST uint kSwitchRefineFull = 64u;
-FW_SHARED_CONST uint kSwitchCrossing = 128u;
-FW_SHARED_CONST uint kSwitchNoDepthFirst = 256u;
+FW_CONST uint kSwitchDense = 1u;
+FW_CONST uint kSwitchShuffle = 2u;
+FW_CONST uint kSwitchNoSeamWake = 4u;
+FW_CONST uint kSwitchWrongDependents = 8u;
+FW_CONST uint kSwitchNoWindWake = 16u;
+FW_CONST uint kSwitchRefineFull = 64u;
+FW_CONST uint kSwitchCrossing = 128u;
+FW_CONST uint kSwitchNoDepthFirst = 256u;
 // internal: an object or the world limits its fire.
-FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;
-FW_SHARED_CONST uint kSwitchPlayback = 0x80000u;     // internal: an object may play a baked burn
-FW_SHARED_CONST uint kSwitchDisplayOnly = 0x100000u;    // internal: `reduce` writes BurnTiles only
+FW_CONST uint kSwitchGoverned = 0x10000u;
+FW_CONST uint kSwitchPlayback = 0x80000u;     // internal: an object may play a baked burn
+FW_CONST uint kSwitchDisplayOnly = 0x100000u;    // internal: `reduce` writes BurnTiles only
 
 // TexelEvent::kind, as FwIgnitionKind
-FW_SHARED_CONST uint kEventIgnite = 0u;
-FW_SHARED_CONST uint kEventWet = 1u;
-FW_SHARED_CONST uint kEventDry = 2u;
-FW_SHARED_CONST uint kEventExtinguish = 3u;
+FW_CONST uint kEventIgnite = 0u;
+FW_CONST uint kEventWet = 1u;
+FW_CONST uint kEventDry = 2u;
+FW_CONST uint kEventExtinguish = 3u;
 // Internal: a jet heats the texel for one heat step if its gates let it pass. Index of the first
 // gate, plus 1, above kEventKindBits.
-FW_SHARED_CONST uint kEventHeat = 4u;
+FW_CONST uint kEventHeat = 4u;
 // Internal: a texel on a jet's path, stored unordered after the batch's other events. Changes
 // nothing. tick: from ignition until the texel gives way.
-FW_SHARED_CONST uint kEventGate = 5u;
+FW_CONST uint kEventGate = 5u;
 // Baked burn: kEventPlayback lights the texel if its object plays back. kEventPlaybackSpan (texel:
 // kNoneTexel) starts playback (tick: kNever) or ends it at `tick` at the latest.
-FW_SHARED_CONST uint kEventPlayback = 6u;
-FW_SHARED_CONST uint kEventPlaybackSpan = 7u;
+FW_CONST uint kEventPlayback = 6u;
+FW_CONST uint kEventPlaybackSpan = 7u;
 // Copies the state of another object's texel; tick: that texel. Its object slot plus 1 is stored
 // above kEventKindBits. No other event of the step addresses either object.
-FW_SHARED_CONST uint kEventCarry = 8u;
-FW_SHARED_CONST uint kEventKindBits = 8u;
+FW_CONST uint kEventCarry = 8u;
+FW_CONST uint kEventKindBits = 8u;
 // Of a gate's kind: the texel must still stand, else be gone.
-FW_SHARED_CONST uint kGateShut = 0x100u;
-FW_SHARED_CONST uint kGateMore = 0x200u;  // of a gate's kind: the next gate must open, too
-FW_SHARED_CONST uint kGates = 2u;         // gates of an event, at most
+FW_CONST uint kGateShut = 0x100u;
+FW_CONST uint kGateMore = 0x200u;  // of a gate's kind: the next gate must open, too
+FW_CONST uint kGates = 2u;         // gates of an event, at most
 
 struct BurnObject {   // offsets and constants of one object
     uint texelBase;   // into texels, normals (per mesh)
@@ -236,7 +236,7 @@ struct BurnObject {   // offsets and constants of one object
     uint skinBase;    // into the skin texels; with kObjectSkinned
     uint zoneWind;    // wind of the zones at the object, wind.h; cosmetic
 };
-FW_SHARED_SIZE(BurnObject, 160)
+FW_SIZE(BurnObject, 160)
 
 struct BurnMaterial { // integers of the spread law of one material on one object; see front.h
     uint sigma0;      // slowness at R0: Q22 ticks per 1/8 position unit
@@ -264,7 +264,7 @@ struct BurnMaterial { // integers of the spread law of one material on one objec
     uint air;         // Q8: wind gain of thick fuel's burning rate, 256 = still air
     uint holeTicks;   // ticks from ignition until it gives way (cosmetic); 0: never
 };
-FW_SHARED_SIZE(BurnMaterial, 112)
+FW_SIZE(BurnMaterial, 112)
 
 struct TileState {
     uint wake;        // earliest pending arrival, ticks; kNever: none
@@ -272,7 +272,7 @@ struct TileState {
     uint lastChange;  // end tick of the last window that changed it
     uint object;      // object slot
 };
-FW_SHARED_SIZE(TileState, 16)
+FW_SIZE(TileState, 16)
 
 struct IterationCounters {  // zeroed before a frame from kRowIteration on, except the carried list
     // Gathered rows: arrival, commit; X also covers runCount.
@@ -281,7 +281,7 @@ struct IterationCounters {  // zeroed before a frame from kRowIteration on, exce
     uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of gather, due tiles
     uint listX; uint listY; uint listZ; uint listCount; // indirect groups of schedule, and its size
 };
-FW_SHARED_SIZE(IterationCounters, 64)
+FW_SIZE(IterationCounters, 64)
 
 struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot
@@ -290,7 +290,7 @@ struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint kind;
     uint tick;        // ignition: tick; wetting: g/m^2 of water; heat: W/m^2
 };
-FW_SHARED_SIZE(TexelEvent, 16)
+FW_SIZE(TexelEvent, 16)
 
 struct ObjectCounters {
     uint ignited;     // texels that are sources now: exact, updated by events and commit
@@ -315,28 +315,28 @@ struct ObjectCounters {
     uint drawnHigh;
     uint playsUntil;  // plays a baked burn in steps that start before this tick: its front stops
 };
-FW_SHARED_SIZE(ObjectCounters, 80)
-FW_SHARED_CONST uint kAirFull = 256u;
-FW_SHARED_CONST uint kAirKnown = 0x200u;
+FW_SIZE(ObjectCounters, 80)
+FW_CONST uint kAirFull = 256u;
+FW_CONST uint kAirKnown = 0x200u;
 // Set for embers of the last exchange: the highest texel wins, so the order does not matter.
-FW_SHARED_CONST uint kSpotFresh = 0x80000000u;
-FW_SHARED_CONST uint kHeldByLimit = 1u;     // burning tiles are at their limit: no new tile catches
-FW_SHARED_CONST uint kHeldStopped = 2u;  // its lifetime is over
-FW_SHARED_CONST uint kHeldWarm = 4u;     // not held, but heated by others
+FW_CONST uint kSpotFresh = 0x80000000u;
+FW_CONST uint kHeldByLimit = 1u;     // burning tiles are at their limit: no new tile catches
+FW_CONST uint kHeldStopped = 2u;  // its lifetime is over
+FW_CONST uint kHeldWarm = 4u;     // not held, but heated by others
 
 // Heat that other objects send to a tile; a writer also adds the tile to the hot list.
 struct TileHeat {
     uint flux;        // W/m^2, before the surface's absorption
     uint pilot;       // 1: a flame is near
 };
-FW_SHARED_SIZE(TileHeat, 8)
+FW_SIZE(TileHeat, 8)
 
 struct ProbeAnswer {
     uint state;
     uint heatX; uint heatY;  // packed HeatTexel
     uint heat;        // 1: the object has heat
 };
-FW_SHARED_SIZE(ProbeAnswer, 16)
+FW_SIZE(ProbeAnswer, 16)
 
 struct BurnTile {     // one burning 8x8 tile, for flames and lights (cosmetic)
     vec4 positionArea;  // world m; flaming area m^2
@@ -344,7 +344,7 @@ struct BurnTile {     // one burning 8x8 tile, for flames and lights (cosmetic)
     // Slot, local tile, flaming texels, mean age in ticks.
     uint object; uint tile; uint texels; uint age;
 };
-FW_SHARED_SIZE(BurnTile, 48)
+FW_SIZE(BurnTile, 48)
 
 struct BurnLight {    // as FwLight
     vec4 positionRadius;
@@ -353,7 +353,7 @@ struct BurnLight {    // as FwLight
     float release;        // W, total
     uint reserved;
 };
-FW_SHARED_SIZE(BurnLight, 48)
+FW_SIZE(BurnLight, 48)
 
 struct StepPush {     // push constants of the simulation passes
     uint now;         // tick at the step's start; reduce, predict: tick after the last step
@@ -371,31 +371,31 @@ struct StepPush {     // push constants of the simulation passes
     uint maxTiles;   // limit of the world's burning tiles, with kSwitchGoverned
     uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(StepPush, 64)
+FW_SIZE(StepPush, 64)
 
-FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
+FW_FN bool isSource(uint t) { return t < kLiveEnd; }
 // Burning strength in this air (ObjectCounters::air), Q8.
-FW_SHARED_FN uint airStrength(uint air) {
+FW_FN uint airStrength(uint air) {
     uint strength = air & 0x1FFu;
     return (air & kAirKnown) == 0u || strength > kAirFull ? kAirFull : strength;
 }
-FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
-FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
+FW_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
+FW_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
 
-FW_SHARED_FN uint eventKind(uint kind) { return kind & ((1u << kEventKindBits) - 1u); }
-FW_SHARED_FN bool eventHasGates(uint kind) { return (kind >> kEventKindBits) != 0u; }
+FW_FN uint eventKind(uint kind) { return kind & ((1u << kEventKindBits) - 1u); }
+FW_FN bool eventHasGates(uint kind) { return (kind >> kEventKindBits) != 0u; }
 
 // A disturbance lowers `playsUntil` to the end of the step or exchange, so all work of one step
 // sees the same value in any order.
-FW_SHARED_FN bool isPlayingBack(uint playsUntil, uint now) { return playsUntil > now; }
+FW_FN bool isPlayingBack(uint playsUntil, uint now) { return playsUntil > now; }
 // The event's kind for an object that does or does not play back.
-FW_SHARED_FN uint playedKind(uint kind, uint playsUntil, uint now) {
+FW_FN uint playedKind(uint kind, uint playsUntil, uint now) {
     uint k = eventKind(kind);
     return k != kEventPlayback ? k : isPlayingBack(playsUntil, now) ? kEventIgnite : kEventGate;
 }
 
 // State of a texel after one event. now: start tick of the step.
-FW_SHARED_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
+FW_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
     if (kind == kEventIgnite)
         return (isReceptive(t) || (isSource(t) && tick < t && t > now)) ? tick : t;
     if (kind == kEventWet) {

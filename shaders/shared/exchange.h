@@ -9,38 +9,38 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
-FW_SHARED_CONST uint kExchangeSteps = 4u;       // steps from one exchange to the next
-FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
+FW_CONST int kExchangeFar = 32767;       // mm, along each axis
+FW_CONST uint kExchangeSteps = 4u;       // steps from one exchange to the next
+FW_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
 // Exchanges until all tiles of a receiver have been updated.
-FW_SHARED_CONST uint kExchangeRounds = kSleepSteps;
-FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
+FW_CONST uint kExchangeRounds = kSleepSteps;
+FW_CONST uint kSourcesPerReceiver = 64u;
 // Cells along the longest side of an object, for its sources.
-FW_SHARED_CONST uint kSourceGrid = 4u;
-FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most
-FW_SHARED_CONST uint kMaxHeatOccluders = 64u;
+FW_CONST uint kSourceGrid = 4u;
+FW_CONST uint kSourcesPerObject = 64u;   // at most
+FW_CONST uint kMaxHeatOccluders = 64u;
 // Cells along an axis of the occlusion grid, at most.
-FW_SHARED_CONST uint kMaxOcclusionSide = 256u;
-FW_SHARED_CONST uint kMaxOcclusionCells = 2097152u;   // cells of the grid, at most
-FW_SHARED_CONST uint kMaxBakedOcclusionCells = 262144u;    // cells filled by objects, at most
+FW_CONST uint kMaxOcclusionSide = 256u;
+FW_CONST uint kMaxOcclusionCells = 2097152u;   // cells of the grid, at most
+FW_CONST uint kMaxBakedOcclusionCells = 262144u;    // cells filled by objects, at most
 // Slot; number of sources; then source | visible share, of 255, << 24.
-FW_SHARED_CONST uint kReceiverWords = 66u;
-FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
-FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
-FW_SHARED_CONST uint kNearest = 300u;           // mm: distances below half of this count as that
-FW_SHARED_CONST uint kPilotReach = 100u;        // mm around a flame in which it ignites vapours
-FW_SHARED_CONST uint kContactGap = 50u;         // mm that a flame bridges
-FW_SHARED_CONST uint kChanceOne = 65536u;       // probability 1
+FW_CONST uint kReceiverWords = 66u;
+FW_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
+FW_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
+FW_CONST uint kNearest = 300u;           // mm: distances below half of this count as that
+FW_CONST uint kPilotReach = 100u;        // mm around a flame in which it ignites vapours
+FW_CONST uint kContactGap = 50u;         // mm that a flame bridges
+FW_CONST uint kChanceOne = 65536u;       // probability 1
 
 // ExchangePush::flags, as FwWorldFlags.
-FW_SHARED_CONST uint kExchangeRadiation = 1u;
-FW_SHARED_CONST uint kExchangePlume = 2u;
-FW_SHARED_CONST uint kExchangeContact = 4u;
-FW_SHARED_CONST uint kExchangeEmbers = 8u;
+FW_CONST uint kExchangeRadiation = 1u;
+FW_CONST uint kExchangePlume = 2u;
+FW_CONST uint kExchangeContact = 4u;
+FW_CONST uint kExchangeEmbers = 8u;
 // ExchangeObject::flags
-FW_SHARED_CONST uint kExchangeLive = 1u;
-FW_SHARED_CONST uint kExchangeGives = 2u;         // its fire may reach other objects
-FW_SHARED_CONST uint kExchangeTwoSided = 4u;      // both sides receive
+FW_CONST uint kExchangeLive = 1u;
+FW_CONST uint kExchangeGives = 2u;         // its fire may reach other objects
+FW_CONST uint kExchangeTwoSided = 4u;      // both sides receive
 
 struct ExchangeObject {  // object data of the exchange, latched at a step's start, all integers
     ivec4 row0;        // world mm = w + (xyz . position >> shift); position: mesh units
@@ -65,7 +65,7 @@ struct ExchangeObject {  // object data of the exchange, latched at a step's sta
     uint catches;      // embers: damping by its moisture, Q8
     uint texelArea;    // mm^2
 };
-FW_SHARED_SIZE(ExchangeObject, 192)
+FW_SIZE(ExchangeObject, 192)
 
 struct ExchangeTile {    // one tile of a mesh, as source and receiver
     uint xy;           // middle of its texels, position units
@@ -75,8 +75,8 @@ struct ExchangeTile {    // one tile of a mesh, as source and receiver
     uvec4 parts;  // per 4 x 4 block: source lane and target texel of a link to another part of the
                   // mesh, see partFrom; kNoneTexel: none
 };
-FW_SHARED_SIZE(ExchangeTile, 32)
-FW_SHARED_CONST uint kPartTexels = 1u << 28u;  // limit of a link's target texel
+FW_SIZE(ExchangeTile, 32)
+FW_CONST uint kPartTexels = 1u << 28u;  // limit of a link's target texel
 
 struct FireSource {    // fire in one cell of an object
     uint power;        // 1/16 W, summed by fire_cells
@@ -93,7 +93,7 @@ struct FireSource {    // fire in one cell of an object
     uint ember;        // hash of the ember of this exchange; 0: none
     uint hops;         // jumps that brought the fire here
 };
-FW_SHARED_SIZE(FireSource, 64)
+FW_SIZE(FireSource, 64)
 
 struct HeatOccluder {       // box that stops radiation, plumes and embers
     ivec4 turn0;       // xyz: row of its rotation, world to box, Q12; w: middle, mm
@@ -101,7 +101,7 @@ struct HeatOccluder {       // box that stops radiation, plumes and embers
     ivec4 turn2;
     uvec4 size;        // xyz: half of its sides, mm, [0, 30000]; w: 1 = in place
 };
-FW_SHARED_SIZE(HeatOccluder, 64)
+FW_SIZE(HeatOccluder, 64)
 
 struct ContactLink {   // texel that another object's texel may light across a gap
     uint object;       // slot that catches
@@ -113,7 +113,7 @@ struct ContactLink {   // texel that another object's texel may light across a g
     uint reserved0;
     uint reserved1;
 };
-FW_SHARED_SIZE(ContactLink, 32)
+FW_SIZE(ContactLink, 32)
 
 struct ExchangePush {  // push constants of the passes that exchange
     uint now;          // tick after the step
@@ -149,36 +149,36 @@ struct ExchangePush {  // push constants of the passes that exchange
     uint reserved1;
     uint reserved2;
 };
-FW_SHARED_SIZE(ExchangePush, 128)
+FW_SIZE(ExchangePush, 128)
 
 // ---- positions
 
-FW_SHARED_FN int dotRow(ivec4 row, ivec3 p) { return row.x * p.x + row.y * p.y + row.z * p.z; }
-FW_SHARED_FN ivec3 dotRows(ivec4 row0, ivec4 row1, ivec4 row2, ivec3 p) {
+FW_FN int dotRow(ivec4 row, ivec3 p) { return row.x * p.x + row.y * p.y + row.z * p.z; }
+FW_FN ivec3 dotRows(ivec4 row0, ivec4 row1, ivec4 row2, ivec3 p) {
     return ivec3(dotRow(row0, p), dotRow(row1, p), dotRow(row2, p));
 }
-FW_SHARED_FN ivec3 toWorldMm(FW_IN(ExchangeObject) o, ivec3 p) {
+FW_FN ivec3 toWorldMm(FW_IN(ExchangeObject) o, ivec3 p) {
     return ivec3(o.row0.w, o.row1.w, o.row2.w) +
            (dotRows(o.row0, o.row1, o.row2, p) >> int(o.shift));
 }
 // Q12. n: normal in Q14.
-FW_SHARED_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) {
+FW_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) {
     return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14;
 }
-FW_SHARED_FN ivec3 tileMiddle(FW_IN(ExchangeTile) t) {
+FW_FN ivec3 tileMiddle(FW_IN(ExchangeTile) t) {
     return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
 }
-FW_SHARED_FN uint tileCell(FW_IN(ExchangeTile) t) { return (t.z >> 16u) & 0xFFu; }
-FW_SHARED_FN uint tileMaterial(FW_IN(ExchangeTile) t) { return t.z >> 24u; }
+FW_FN uint tileCell(FW_IN(ExchangeTile) t) { return (t.z >> 16u) & 0xFFu; }
+FW_FN uint tileMaterial(FW_IN(ExchangeTile) t) { return t.z >> 24u; }
 
-FW_SHARED_FN bool isWithinExchangeRange(ivec3 d) {
+FW_FN bool isWithinExchangeRange(ivec3 d) {
     return d.x <= kExchangeFar && d.x >= -kExchangeFar && d.y <= kExchangeFar &&
            d.y >= -kExchangeFar && d.z <= kExchangeFar && d.z >= -kExchangeFar;
 }
-FW_SHARED_FN uint absolute(int v) { return uint(v < 0 ? -v : v); }
+FW_FN uint absolute(int v) { return uint(v < 0 ? -v : v); }
 
 // Does the segment from a to b, without its ends, intersect the box?
-FW_SHARED_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
+FW_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
     if (k.size.w == 0u) return false;
     ivec3 c = ivec3(k.turn0.w, k.turn1.w, k.turn2.w);
     ivec3 d = (b - a) / 2;
@@ -208,13 +208,11 @@ FW_SHARED_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
 // that objects fill and the number of such cells before these. Then two words for each of them:
 // object key and texel. A cell of an object is solid while that texel stands.
 // Of a cell that never gives way; | slot | material << 24.
-FW_SHARED_CONST uint kOcclusionPermanent = 0x80000000u;
-FW_SHARED_CONST uint kOcclusionSlotMask = 0xFFFFFFu;
+FW_CONST uint kOcclusionPermanent = 0x80000000u;
+FW_CONST uint kOcclusionSlotMask = 0xFFFFFFu;
 
-FW_SHARED_FN uint occlusionSide(uint counts, uint axis) {
-    return (counts >> (10u * axis)) & 0x3FFu;
-}
-FW_SHARED_FN uint occlusionWords(uint counts) {  // of one bit per cell
+FW_FN uint occlusionSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
+FW_FN uint occlusionWords(uint counts) {  // of one bit per cell
     return (occlusionSide(counts, 0u) * occlusionSide(counts, 1u) * occlusionSide(counts, 2u) +
             31u) >>
            5u;
@@ -239,7 +237,7 @@ struct OcclusionAxis {
     uint ahead;
 };
 // begins, at: mm in the grid, start of the segment and entry point.
-FW_SHARED_FN OcclusionAxis makeOcclusionAxis(int begins, int at, int d, int cells, int side) {
+FW_FN OcclusionAxis makeOcclusionAxis(int begins, int at, int d, int cells, int side) {
     OcclusionAxis a;
     int inside = at < 0 ? 0 : (at >= cells * side ? cells * side - 1 : at);
     a.cell = int(divide(uint(inside), uint(side)));
@@ -250,7 +248,7 @@ FW_SHARED_FN OcclusionAxis makeOcclusionAxis(int begins, int at, int d, int cell
     return a;
 }
 // Position on the segment, Q14, where it enters the slab of an axis; above 16384: never.
-FW_SHARED_FN uint occlusionEntry(int begins, int d, int size) {
+FW_FN uint occlusionEntry(int begins, int d, int size) {
     uint outside = begins < 0 ? uint(-begins) : (begins >= size ? uint(begins - size + 1) : 0u);
     if (outside == 0u) return 0u;
     bool comes = begins < 0 ? d > 0 : d < 0;
@@ -258,7 +256,7 @@ FW_SHARED_FN uint occlusionEntry(int begins, int d, int size) {
     return divide(outside << 14u, absolute(d));
 }
 
-FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
+FW_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
     OcclusionWalk w;
     w.within = false;
     w.cell = 0u;
@@ -303,7 +301,7 @@ FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, iv
 }
 
 // Moves to the next cell. Products of a length and a distance ahead stay below 2^31.
-FW_SHARED_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
+FW_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
     bool alongX = w.ahead.x * w.span.y < w.ahead.y * w.span.x;
     uint ahead = alongX ? w.ahead.x : w.ahead.y, span = alongX ? w.span.x : w.span.y;
     bool alongZ = w.ahead.z * span < ahead * w.span.z;
@@ -337,14 +335,13 @@ struct OcclusionEnds {
 // Is the current cell too near to an end? Everything within one cell of an end is, so what supports
 // a fire does not block it. slot: owner of the cell; kNoneTexel: the host, which counts as either
 // end.
-FW_SHARED_FN bool isNearWalkEnd(FW_IN(OcclusionWalk) w, FW_IN(OcclusionEnds) e, uint slot,
-                                uint side) {
+FW_FN bool isNearWalkEnd(FW_IN(OcclusionWalk) w, FW_IN(OcclusionEnds) e, uint slot, uint side) {
     uint at = (w.whole * divide(w.passed << 12u, w.of)) >> 12u;
     uint from = slot == e.from || slot == kNoneTexel ? e.fromSpare : side;
     uint to = slot == e.to || slot == kNoneTexel ? e.toSpare : side;
     return at < from || w.whole < at + to + side / 2u;
 }
-FW_SHARED_FN OcclusionEnds emberOcclusionEnds(FW_IN(FireSource) s, uint to, uint side) {
+FW_FN OcclusionEnds emberOcclusionEnds(FW_IN(FireSource) s, uint to, uint side) {
     OcclusionEnds e;
     e.from = s.object;
     e.to = to;
@@ -354,8 +351,8 @@ FW_SHARED_FN OcclusionEnds emberOcclusionEnds(FW_IN(FireSource) s, uint to, uint
 }
 // From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a
 // grazing angle crosses many cells of its own surface.
-FW_SHARED_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at,
-                                              ivec3 normal, uint side) {
+FW_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at,
+                                       ivec3 normal, uint side) {
     OcclusionEnds e = emberOcclusionEnds(s, to, side);
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return e;
@@ -368,7 +365,7 @@ FW_SHARED_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, 
 
 // ---- flames
 
-FW_SHARED_FN uint highestBit(uint x) {  // of x > 0
+FW_FN uint highestBit(uint x) {  // of x > 0
 #ifdef __cplusplus
     uint bit = 0u;
     while ((x >> bit) > 1u) ++bit;
@@ -379,7 +376,7 @@ FW_SHARED_FN uint highestBit(uint x) {  // of x > 0
 }
 
 // x^0.4, Q8; 0 for 0.
-FW_SHARED_FN uint power04(uint x) {
+FW_FN uint power04(uint x) {
     if (x == 0u) return 0u;
     uint fours = 0u;
     while (x >= 32768u) {  // x^0.4 of a 32nd is a 4th
@@ -401,19 +398,19 @@ FW_SHARED_FN uint power04(uint x) {
 }
 
 // Diameter in mm of a disc of `area` mm^2.
-FW_SHARED_FN uint fireDiameter(uint area) {
+FW_FN uint fireDiameter(uint area) {
     return isqrtNear(minU(mulShift(area, 83443u, 16u), 0xFFFC0000u));
 }
 // Flame height in mm (Heskestad); a wide weak fire counts as many small ones. scale:
 // power04(watts).
-FW_SHARED_FN uint flameHeight(uint scale, uint diameter) {
+FW_FN uint flameHeight(uint scale, uint diameter) {
     uint tall = mulShift(scale, 3796u, 16u);
     uint less = diameter + diameter / 50u;
     return maxU(tall - minU(less, tall), tall / 3u);
 }
 
 // Turns sums into a source in the world. An empty source stays empty.
-FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(ExchangeObject) o) {
+FW_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(ExchangeObject) o) {
     s.watts = s.tiles == 0u ? 0u : s.power >> 4u;
     if (s.watts == 0u) return;
     ivec3 middle = ivec3(int(divide(s.sumX, s.tiles) * 4u), int(divide(s.sumY, s.tiles) * 4u),
@@ -424,14 +421,13 @@ FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(ExchangeObject) o) 
     s.place = ivec4(at.x, at.y, at.z, int(minU(flameHeight(s.scale, s.diameter), 30000u)));
 }
 
-FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
+FW_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
     int h = (s.place.w * eighths) >> 3;
     return ivec3(s.place.x, s.place.y, s.place.z) + ((up * h) >> 12);
 }
 
 // Radiation from one point of a flame. normal: Q12; nearest: mm.
-FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal,
-                           bool both) {
+FW_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal, bool both) {
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return 0u;
     uint length = maxU(isqrtNear(squaredLength(d)), 1u);
@@ -443,7 +439,7 @@ FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec
 }
 
 // W/m^2 that a flame sends to a surface there.
-FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 normal, bool both) {
+FW_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 normal, bool both) {
     uint nearest = maxU(s.diameter, kNearest) / 2u;
     ivec3 middle = alongFlame(s, up, 4);
     ivec3 d = middle - at;
@@ -462,7 +458,7 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
 }
 
 // K above ambient on a plume's axis, z mm above its base: McCaffrey's three zones.
-FW_SHARED_FN uint plumeRise(uint z, uint scale) {
+FW_FN uint plumeRise(uint z, uint scale) {
     if (scale == 0u) return 0u;
     uint q = divide(minU(z, 65535u) * 4057u, scale);  // 1/1000 of z / Q^0.4
     if (q < 80u) return 800u;
@@ -485,7 +481,7 @@ struct FlameFrame {  // a receiver in a flame's frame
     uint beside2;    // mm^2 from its axis
     bool near;       // within kExchangeFar
 };
-FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
+FW_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
     FlameFrame f;
     ivec3 d = at - ivec3(s.place.x, s.place.y, s.place.z);
     f.near = isWithinExchangeRange(d);
@@ -499,7 +495,7 @@ FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
 }
 
 // W/m^2 from a plume to a surface at `heat`, 1/16 K; ambient: 1/16 K.
-FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat, uint ambient) {
+FW_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat, uint ambient) {
     uint width = (uint(f.above) * 492u) / 4096u + s.diameter / 2u;  // mm: 0.12 z + D/2
     width = minU(maxU(width, 10u), 20000u);
     uint square = width * width, flux = 0u;
@@ -514,13 +510,13 @@ FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat,
 }
 
 // Does this flame ignite the vapours of a hot surface there?
-FW_SHARED_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
+FW_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
     if (!f.near || f.above < -int(kPilotReach) || f.above > s.place.w) return false;
     uint reach = s.diameter / 2u + kPilotReach;
     return f.beside2 <= reach * reach;
 }
 
-FW_SHARED_FN ivec3 boxMiddle(FW_IN(ExchangeObject) o) {
+FW_FN ivec3 boxMiddle(FW_IN(ExchangeObject) o) {
     ivec3 low = ivec3(o.turn0.w, o.turn1.w, o.turn2.w);
     return low + (ivec3(o.high.x, o.high.y, o.high.z) - low) / 2;
 }
@@ -530,8 +526,8 @@ struct Received {
     uint pilot;  // 1: a flame is near
 };
 // Heat from one source at a position, under the world's switches. seen: visible share, of 255.
-FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient, ivec3 up,
-                                   ivec3 at, ivec3 normal, bool both, uint seen) {
+FW_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient, ivec3 up, ivec3 at,
+                            ivec3 normal, bool both, uint seen) {
     Received r;
     FlameFrame f = flameFrame(s, up, at);
     uint flux = 0u;
@@ -543,7 +539,7 @@ FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient
 }
 
 // Weight of a source at a position, to choose among many; about W/cm^2.
-FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
+FW_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
     ivec3 d = ivec3(s.place.x, s.place.y, s.place.z) - at;
     if (s.watts == 0u || !isWithinExchangeRange(d)) return 0u;
     uint square = maxU(divide(squaredLength(d), 100u), 100u);
@@ -552,21 +548,21 @@ FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
 
 // ---- ignition rules
 
-FW_SHARED_FN uint multiplyChances(uint a, uint b) { return mulShift(a, b, 16u); }
-FW_SHARED_FN bool drawn(uint hash, uint chance) { return (hash >> 16u) < chance; }
-FW_SHARED_FN uint mixed(uint a, uint b) { return hash32(a ^ (hash32(b) + 0x9E3779B9u)); }
+FW_FN uint multiplyChances(uint a, uint b) { return mulShift(a, b, 16u); }
+FW_FN bool drawn(uint hash, uint chance) { return (hash >> 16u) < chance; }
+FW_FN uint mixed(uint a, uint b) { return hash32(a ^ (hash32(b) + 0x9E3779B9u)); }
 
 // Decided once per pair and fire. caught: tick at which the source object was found alight.
-FW_SHARED_FN bool mayReach(uint seed, uint from, uint to, uint caught, uint chance) {
+FW_FN bool mayReach(uint seed, uint from, uint to, uint caught, uint chance) {
     return drawn(mixed(mixed(mixed(seed, from), to), caught), chance);
 }
-FW_SHARED_FN bool mayTransfer(FW_IN(ExchangeObject) o, uint hops, uint maxWorldHops) {
+FW_FN bool mayTransfer(FW_IN(ExchangeObject) o, uint hops, uint maxWorldHops) {
     return (o.flags & kExchangeGives) != 0u && hops < minU(o.hopsMost, maxWorldHops);
 }
 
 // Updates an object's lit and stop ticks at an exchange.
-FW_SHARED_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o,
-                             FW_IN(ExchangePush) rules) {
+FW_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o,
+                      FW_IN(ExchangePush) rules) {
     c.spotTexel &= ~kSpotFresh;
     if (c.ignited == 0u) {
         // An object that heats it may light it by the next exchange.
@@ -582,38 +578,38 @@ FW_SHARED_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o
 
 // Key of the object that lit another: fewest jumps win, then the lowest slot, in any order. 0: none
 // yet.
-FW_SHARED_CONST uint kLitByHand = 0xFFFFFFFFu;
-FW_SHARED_FN uint litBy(uint hops, uint from) {
+FW_CONST uint kLitByHand = 0xFFFFFFFFu;
+FW_FN uint litBy(uint hops, uint from) {
     return ~((minU(hops + 1u, 254u) << 24u) | (from & 0xFFFFFFu)) & 0xFFFFFFFFu;
 }
-FW_SHARED_FN uint hopsOf(uint by) { return (by == 0u || by == kLitByHand) ? 0u : (~by) >> 24u; }
-FW_SHARED_FN uint igniterOf(uint by) {  // slot, or kNoneTexel
+FW_FN uint hopsOf(uint by) { return (by == 0u || by == kLitByHand) ? 0u : (~by) >> 24u; }
+FW_FN uint igniterOf(uint by) {  // slot, or kNoneTexel
     return (by == 0u || by == kLitByHand) ? kNoneTexel : (~by) & 0xFFFFFFu;
 }
 
-FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && now >= stopTick; }
+FW_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && now >= stopTick; }
 // Is a tile that does not burn held back by a limit? Counts are those before the iteration.
-FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
-                            uint objectFlags, uint maxObject) {
+FW_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
+                     uint objectFlags, uint maxObject) {
     if ((tileFlag & kTileBurning) != 0u) return false;
     return burning >= maxWorld ||
            ((objectFlags & kExchangeLive) != 0u && objectBurning >= maxObject);
 }
 // kHeld bits of an object at an exchange.
-FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject,
-                           uint stopTick, uint now) {
+FW_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject, uint stopTick,
+                    uint now) {
     uint held = (burning >= maxWorld || objectBurning >= maxObject) ? kHeldByLimit : 0u;
     return held | (stoppedAt(stopTick, now) ? kHeldStopped : 0u);
 }
 // May another object light a tile with this flag?
-FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
+FW_FN bool mayCatch(uint held, uint tileFlag) {
     return (held & kHeldStopped) == 0u &&
            ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
 }
 
 // Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt
 // at the exchange before, so texels lit in the current one do not count, in any order.
-FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
+FW_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
     if (!isSource(t) || t + kExchangeTicks >= now) return kNever;
     uint begins = maxU(t, since);
     uint arrives = begins + delay;
@@ -623,23 +619,23 @@ FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, u
 
 // Lane of a tile's block from which fire leaves over a link between two parts of a mesh. The target
 // is `link` % kPartTexels.
-FW_SHARED_FN uint partFrom(uint link, uint block) {
+FW_FN uint partFrom(uint link, uint block) {
     uint lane = link >> 28u;
     return ((block >> 1u) * 4u + (lane >> 2u)) * 8u + (block & 1u) * 4u + (lane & 3u);
 }
 // Ticks over such a link: those of an ordinary link of that length, in position units, in still
 // air.
-FW_SHARED_FN uint partDelay(FW_IN(BurnMaterial) to, ivec3 gap) {
+FW_FN uint partDelay(FW_IN(BurnMaterial) to, ivec3 gap) {
     return mulShift(to.sigma0, isqrtNear(squaredLength(gap)) * 8u, 22u);
 }
 // Has fire crossed it? t: state of the source texel, lit before the last exchange, as for a
 // contact.
-FW_SHARED_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
+FW_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
     return isSource(t) && t + kExchangeTicks < now && delay <= now - t &&
            flames(t, now, flameTicks);
 }
 // Tick of the exchange that finds fire at the target.
-FW_SHARED_FN uint partArrives(uint t, uint delay) {
+FW_FN uint partArrives(uint t, uint delay) {
     uint arrives = maxU(t + delay, t + kExchangeTicks + 1u);
     return (arrives + kExchangeTicks - 1u) / kExchangeTicks * kExchangeTicks;
 }
@@ -647,22 +643,22 @@ FW_SHARED_FN uint partArrives(uint t, uint delay) {
 // ---- embers
 
 // World axis most parallel to `up`: axis * 2 | 1 if it points down.
-FW_SHARED_FN uint upAxis(ivec3 up) {
+FW_FN uint upAxis(ivec3 up) {
     uint ux = absolute(up.x), uy = absolute(up.y), uz = absolute(up.z);
     uint axis = (uy >= ux && uy >= uz) ? 1u : ux >= uz ? 0u : 2u;
     int along = axis == 0u ? up.x : axis == 1u ? up.y : up.z;
     return axis * 2u + (along < 0 ? 1u : 0u);
 }
-FW_SHARED_FN int heightOf(ivec3 p, uint axis) {
+FW_FN int heightOf(ivec3 p, uint axis) {
     int h = axis < 2u ? p.x : axis < 4u ? p.y : p.z;
     return (axis & 1u) != 0u ? -h : h;
 }
-FW_SHARED_FN ivec3 acrossUp(ivec3 p, uint axis) {
+FW_FN ivec3 acrossUp(ivec3 p, uint axis) {
     return axis < 2u ? ivec3(0, p.y, p.z) : axis < 4u ? ivec3(p.x, 0, p.z) : ivec3(p.x, p.y, 0);
 }
 // Height of an object's top below a position, mm; kNoTop: the position is beside or under it.
-FW_SHARED_CONST int kNoTop = -2147483647;
-FW_SHARED_FN int topBelow(FW_IN(ExchangeObject) o, ivec3 at, uint axis) {
+FW_CONST int kNoTop = -2147483647;
+FW_FN int topBelow(FW_IN(ExchangeObject) o, ivec3 at, uint axis) {
     ivec3 low = acrossUp(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis);
     ivec3 high = acrossUp(ivec3(o.high.x, o.high.y, o.high.z), axis);
     ivec3 p = acrossUp(at, axis);
@@ -673,9 +669,9 @@ FW_SHARED_FN int topBelow(FW_IN(ExchangeObject) o, ivec3 at, uint axis) {
     return top <= heightOf(at, axis) ? top : kNoTop;
 }
 // How badly a tile matches a landing position, [0, kMisses]: least wins.
-FW_SHARED_CONST uint kMisses = 16383u;
-FW_SHARED_FN uint landingMiss(FW_IN(ExchangeObject) o, FW_IN(ExchangeTile) tile, ivec3 at, int top,
-                              uint axis) {
+FW_CONST uint kMisses = 16383u;
+FW_FN uint landingMiss(FW_IN(ExchangeObject) o, FW_IN(ExchangeTile) tile, ivec3 at, int top,
+                       uint axis) {
     if (tile.texels == 0u) return kMisses;
     int facing = heightOf(turnToWorld(o, decodeNormal(tile.normal)), axis);
     if ((o.flags & kExchangeTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
@@ -696,7 +692,7 @@ struct Ember {
 };
 
 // Hash of the ember that the source sends in this exchange; 0: none.
-FW_SHARED_FN uint emberOf(uint seed, uint from, uint cell, uint now, uint power, uint brands) {
+FW_FN uint emberOf(uint seed, uint from, uint cell, uint now, uint power, uint brands) {
     uint roll = mixed(mixed(seed ^ 0x5EEDE3BEu, from * kSourcesPerObject + cell), now);
     uint high, low;
     umulExtended(power, brands, high, low);
@@ -705,7 +701,7 @@ FW_SHARED_FN uint emberOf(uint seed, uint from, uint cell, uint now, uint power,
 }
 
 // A char disc, 1 to 4 mm thick, lofted one to four flame heights, falling at terminal speed.
-FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 wind) {
+FW_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 wind) {
     Ember e;
     uint a = hash32(hash), b = hash32(hash + 1u), c = hash32(hash + 2u);
     uint thick = (a & 3u);
@@ -736,19 +732,19 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
 }
 
 // Horizontal distance of a texel from a position, mm, [0, 65535].
-FW_SHARED_FN uint besidePlace(FW_IN(ExchangeObject) o, ivec3 position, ivec3 at, uint axis) {
+FW_FN uint besidePlace(FW_IN(ExchangeObject) o, ivec3 position, ivec3 at, uint axis) {
     ivec3 p = toWorldMm(o, position);
     ivec3 d = acrossUp(p - at, axis);
     return isWithinExchangeRange(d) ? isqrtNear(squaredLength(d)) : 65535u;
 }
 // Is `other` in the disc that an ember on `lane` of the same tile lights?
-FW_SHARED_FN bool besideLane(uint lane, uint other) {
+FW_FN bool besideLane(uint lane, uint other) {
     int dx = int(lane & 7u) - int(other & 7u), dy = int(lane >> 3u) - int(other >> 3u);
     return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
 // Ignition probability of kChanceOne: 1 - exp(-E / 200 J), damped by moisture.
-FW_SHARED_FN uint emberLights(uint energy, uint catches) {
+FW_FN uint emberLights(uint energy, uint catches) {
     uint unlit = halvings(minU(energy, 4000u) * 473u);  // Q16: log2(e) / 200
     return ((65536u - minU(unlit, 65536u)) * minU(catches, 256u)) >> 8u;
 }

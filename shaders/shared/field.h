@@ -10,27 +10,27 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kFieldSources = 4u;         // of a field
-FW_SHARED_CONST uint kMaxFieldSide = 256u;      // cells
-FW_SHARED_CONST uint kMaxFieldCell = 32767u;    // particles of a cell
-FW_SHARED_CONST uint kFieldCellFull = 16384u;    // above it no more are emitted
-FW_SHARED_CONST uint kFieldAll = 32768u;         // Q15, share of all of a cell's particles
-FW_SHARED_CONST int kFieldStill = 128;           // byte of a mean motion of 0
-FW_SHARED_CONST int kFieldSpeed = 120;           // byte difference of one cell per step
-FW_SHARED_CONST uint kFieldWallCell = 0x8080FFFFu;  // word of a wall cell
-FW_SHARED_CONST uint kMaxFieldSpread = 4096u;   // Q15: an eighth; twice as much is unstable
+FW_CONST uint kFieldSources = 4u;         // of a field
+FW_CONST uint kMaxFieldSide = 256u;      // cells
+FW_CONST uint kMaxFieldCell = 32767u;    // particles of a cell
+FW_CONST uint kFieldCellFull = 16384u;    // above it no more are emitted
+FW_CONST uint kFieldAll = 32768u;         // Q15, share of all of a cell's particles
+FW_CONST int kFieldStill = 128;           // byte of a mean motion of 0
+FW_CONST int kFieldSpeed = 120;           // byte difference of one cell per step
+FW_CONST uint kFieldWallCell = 0x8080FFFFu;  // word of a wall cell
+FW_CONST uint kMaxFieldSpread = 4096u;   // Q15: an eighth; twice as much is unstable
 
-FW_SHARED_CONST uint kMaxFields = 256u;          // of a world
-FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: steps of a field, at most
-FW_SHARED_CONST uint kFieldUnits = 8u;  // units per group; a unit is eight strips of four columns
-FW_SHARED_CONST uint kFieldWall = 255u;  // of a cell's mask; below: strength of the paint there
+FW_CONST uint kMaxFields = 256u;          // of a world
+FW_CONST uint kMaxFieldRounds = 64u;      // of a frame: steps of a field, at most
+FW_CONST uint kFieldUnits = 8u;  // units per group; a unit is eight strips of four columns
+FW_CONST uint kFieldWall = 255u;  // of a cell's mask; below: strength of the paint there
 // Bits of FieldRules::open: particles may leave the field there.
-FW_SHARED_CONST uint kFieldOpenLeft = 1u;
-FW_SHARED_CONST uint kFieldOpenRight = 2u;
-FW_SHARED_CONST uint kFieldOpenBottom = 4u;
-FW_SHARED_CONST uint kFieldOpenTop = 8u;
-FW_SHARED_CONST uint kFieldFresh = 0x80000000u;  // of a masked run's step: empties the field
-FW_SHARED_CONST uint kFieldRing = 16u;           // instead: left and right border are joined
+FW_CONST uint kFieldOpenLeft = 1u;
+FW_CONST uint kFieldOpenRight = 2u;
+FW_CONST uint kFieldOpenBottom = 4u;
+FW_CONST uint kFieldOpenTop = 8u;
+FW_CONST uint kFieldFresh = 0x80000000u;  // of a masked run's step: empties the field
+FW_CONST uint kFieldRing = 16u;           // instead: left and right border are joined
 
 struct FieldSource {     // rectangle of cells that emits
     ivec4 cells;         // first x, first y, end x, end y
@@ -38,7 +38,7 @@ struct FieldSource {     // rectangle of cells that emits
     uint disc;           // 1: the inscribed disc instead of the rectangle
     uint pad0; uint pad1;
 };
-FW_SHARED_SIZE(FieldSource, 32)
+FW_SIZE(FieldSource, 32)
 
 struct FieldRules {      // of one field
     // Q7, external force (wind, buoyancy, weight): 128 moves all particles one cell per step.
@@ -63,44 +63,42 @@ struct FieldRules {      // of one field
 
     FieldSource sources[kFieldSources];
 };
-FW_SHARED_SIZE(FieldRules, 192)
+FW_SIZE(FieldRules, 192)
 
 struct FieldPush {       // push constants of the field passes
     uint first;          // of the runs
     uint pad0; uint pad1; uint pad2;
 };
-FW_SHARED_SIZE(FieldPush, 16)
+FW_SIZE(FieldPush, 16)
 
 // A cell: particles (15 bits; a wall has 0 and the 16th bit), mean motion, one byte per axis.
-FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) {
-    return n | (motion.x << 16u) | (motion.y << 24u);
-}
-FW_SHARED_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
+FW_FN uint fieldCell(uint n, uvec2 motion) { return n | (motion.x << 16u) | (motion.y << 24u); }
+FW_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
 // All ones for a wall.
-FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }
-FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kMaxFieldCell; }
+FW_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }
+FW_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kMaxFieldCell; }
 
 // Unit vector of direction k, Q7.
-FW_SHARED_FN ivec2 fieldDirection(uint k) {
+FW_FN ivec2 fieldDirection(uint k) {
     int diagonal = (k & 1u) != 0u ? 91 : 128;
     int x = (k == 2u || k == 6u) ? 0 : ((k > 2u && k < 6u) ? -diagonal : diagonal);
     int y = (k == 0u || k == 4u) ? 0 : (k > 4u ? -diagonal : diagonal);
     return ivec2(x, y);
 }
-FW_SHARED_FN ivec2 fieldNeighbour(uint k) {  // the same in cells
+FW_FN ivec2 fieldNeighbour(uint k) {  // the same in cells
     ivec2 d = fieldDirection(k);
     return ivec2(d.x == 0 ? 0 : (d.x > 0 ? 1 : -1), d.y == 0 ? 0 : (d.y > 0 ? 1 : -1));
 }
 
 // Random numbers of a step: one key per use, one number per pair of coordinates.
-FW_SHARED_FN uint fieldKey(uint step, uint seed, uint salt) {
+FW_FN uint fieldKey(uint step, uint seed, uint salt) {
     return hash32((seed * 0x9E3779B9u) ^ (step * 0x85EBCA6Bu + salt));
 }
-FW_SHARED_FN uint fieldRandom(uint key, uint x, uint y) { return hash32((x | (y << 16u)) ^ key); }
+FW_FN uint fieldRandom(uint key, uint x, uint y) { return hash32((x | (y << 16u)) ^ key); }
 
 // Random unit vector, Q7 (within 1 of it), uniform in angle: an eighth of a turn to both sides of
 // an axis by the first terms of sine and cosine.
-FW_SHARED_FN ivec2 fieldChaos(uint h) {
+FW_FN ivec2 fieldChaos(uint h) {
     int a = int(h & 255u) - 128;
     a += a >= 0 ? 1 : 0;  // -128..-1, 1..128: no bias to one side
     int c = 128 - ((a * a * 75) >> 15u);
@@ -112,17 +110,17 @@ FW_SHARED_FN ivec2 fieldChaos(uint h) {
 
 // Four cells of a row, x = 4 i ..., share a random number: dither of shares, Q15, and of deaths,
 // Q16.
-FW_SHARED_FN uint fieldDither(uint random, uint x) {
+FW_FN uint fieldDither(uint random, uint x) {
     return (((random >> (8u * (x & 3u))) & 255u) << 7u) + 64u;
 }
-FW_SHARED_FN uint fieldWindow(uint random, uint x) {
+FW_FN uint fieldWindow(uint random, uint x) {
     return ((x & 3u) == 3u ? (random >> 24u) | (random << 8u) : random >> (8u * (x & 3u))) &
            0xFFFFu;
 }
 
 struct FieldEight { uint k[8]; };  // of each direction
 
-FW_SHARED_FN int fieldLobe(int along) { return along > 0 ? along : 0; }
+FW_FN int fieldLobe(int along) { return along > 0 ? along : 0; }
 
 // Shares (Q15) that move particles; scaled down if their sum would exceed kFieldAll.
 struct FieldWeights {
@@ -131,7 +129,7 @@ struct FieldWeights {
     uint inertia;          // cosine lobe of motion kFieldSpeed: Q7 more
     uint inertiaDiagonal;  // diagonals, of the sum of both components
 };
-FW_SHARED_FN FieldWeights fieldWeights(FieldRules rules) {
+FW_FN FieldWeights fieldWeights(FieldRules rules) {
     FieldWeights w;
     uint sum = 0u;
     FW_UNROLL for (uint k = 0u; k < 8u; ++k) {
@@ -159,7 +157,7 @@ struct FieldRecord {     // of one field on a device
     uint cellRoom;       // from its first cells to its second; even steps read the first
     uint pad1; uint pad2;
 };
-FW_SHARED_SIZE(FieldRecord, 256)
+FW_SIZE(FieldRecord, 256)
 
 struct FieldCounters {   // totals
     uint inside;         // particles, now
@@ -172,14 +170,14 @@ struct FieldCounters {   // totals
     uint steps;
     uint pad1;
 };
-FW_SHARED_SIZE(FieldCounters, 48)
+FW_SIZE(FieldCounters, 48)
 
 // Shares by force and random vector, common to many cells, and their sum.
 struct FieldPushes {
     FieldEight to;
     uint sum;
 };
-FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
+FW_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
     FieldPushes p;
     int x = random.x * 128, y = random.y * 128, a = (random.x + random.y) * 91,
         b = (random.x - random.y) * 91;
@@ -208,8 +206,8 @@ struct FieldGiver {
     uint ahead;      // first dithers, Q15: directions 7 0 1 2 and 3 4 5 6
     uint behind;
 };
-FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint inertia,
-                                   uint inertiaDiagonal, uint dither) {
+FW_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint inertia, uint inertiaDiagonal,
+                            uint dither) {
     FieldGiver g;
     uint mx = (cell >> 16u) & 255u, my = cell >> 24u;
     uint straight = inertia & 0x3FFFu, slant = inertiaDiagonal & 0x3FFFu;
@@ -227,7 +225,7 @@ FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint ine
 }
 // Flow in direction k, Q15. push: share of the direction; around: the neighbour's particles times
 // spread (walls and cells beyond a border count as full); room: what the neighbour can take.
-FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint room) {
+FW_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint room) {
     int v = (k & 3u) == 0u ? g.v0 : ((k & 3u) == 1u ? g.v1 : ((k & 3u) == 2u ? g.v2 : g.v3));
     uint share = push + uint(k < 4u ? fieldLobe(v) : fieldLobe(v) - v);
     int less = fieldLobe(int(g.own - around));
@@ -238,25 +236,23 @@ FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint r
 // Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6. Each remainder carries over to
 // the next direction, and both first dithers sum up to one. So no more is given than exists, and
 // each direction gets its flow on average. sum: of the arc so far, starting with its dither.
-FW_SHARED_FN uint fieldGiven(uint before, uint sum) {
-    return ((sum >> 15u) - (before >> 15u)) & 4095u;
-}
+FW_FN uint fieldGiven(uint before, uint sum) { return ((sum >> 15u) - (before >> 15u)) & 4095u; }
 
 // Flow that a cell of n particles takes per direction, Q15: an eighth of its free capacity.
-FW_SHARED_FN uint fieldRoom(uint n) { return ((kMaxFieldCell - n) << 12u) & ~32767u; }
+FW_FN uint fieldRoom(uint n) { return ((kMaxFieldCell - n) << 12u) & ~32767u; }
 
 // Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a
 // cell of this motion: memory and displacement. Q7.
-FW_SHARED_FN uint fieldCarried(uint motion, int u, uint memory) {
+FW_FN uint fieldCarried(uint motion, int u, uint memory) {
     return motion * memory + uint(kFieldStill + u) * (128u - memory);
 }
-FW_SHARED_FN int fieldSpeed(int direction) {
+FW_FN int fieldSpeed(int direction) {
     int size = direction == 0 ? 0 : direction == 128 || direction == -128 ? kFieldSpeed : 85;
     return direction < 0 ? -size : size;
 }
 
 // Motion byte of n particles with the summed motion `sum`, rounded.
-FW_SHARED_FN uint fieldMean(uint sum, uint n) {
+FW_FN uint fieldMean(uint sum, uint n) {
     uint t = (sum >> 7u) + (n >> 1u);  // below 2^23
 #ifdef __cplusplus
     return n == 0u ? uint(kFieldStill) : t / n;
@@ -270,12 +266,10 @@ FW_SHARED_FN uint fieldMean(uint sum, uint n) {
 }
 
 // Deaths among n particles. random: 16 bits.
-FW_SHARED_FN uint fieldDeaths(uint n, uint death, uint random) {
-    return (n * death + random) >> 16u;
-}
+FW_FN uint fieldDeaths(uint n, uint death, uint random) { return (n * death + random) >> 16u; }
 
 // Particles emitted into a cell of n particles with this mask. random: 32 bits.
-FW_SHARED_FN uint fieldEmission(uint x, uint y, uint n, uint mask, FieldRules rules, uint random) {
+FW_FN uint fieldEmission(uint x, uint y, uint n, uint mask, FieldRules rules, uint random) {
     uint rate = (rules.paint * mask * 258u) >> 16u;
     FW_UNROLL for (uint k = 0u; k < kFieldSources; ++k) {
         ivec4 c = rules.sources[k].cells;

@@ -21,12 +21,12 @@ const int kFrontRingX[8] = int[8](1, 1, 0, -1, -1, -1, 0, 1);
 const int kFrontRingY[8] = int[8](0, 1, 1, 1, 0, -1, -1, -1);
 #endif
 
-FW_SHARED_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.3 h
-FW_SHARED_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
-FW_SHARED_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
-FW_SHARED_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
+FW_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.3 h
+FW_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
+FW_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
+FW_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
 // TileState::lastChange of a tile that never changed.
-FW_SHARED_CONST uint kNeverChanged = 0x80000000u;
+FW_CONST uint kNeverChanged = 0x80000000u;
 
 struct FrontDrive {  // slowness of one texel: A * (1 - e.v)
     uint A;         // Q22 ticks per 1/8 position unit
@@ -40,26 +40,26 @@ struct FrontRing {  // the ring of a texel
 };
 
 // Can a texel with these material flags (texel word >> 16) burn?
-FW_SHARED_FN bool canTexelBurn(uint materialFlags, uint slowness, uint burnFlags) {
+FW_FN bool canTexelBurn(uint materialFlags, uint slowness, uint burnFlags) {
     return (materialFlags & kTexelReal) != 0u && slowness != 0u && (burnFlags & 1u) != 0u;
 }
 
 // Does a texel of state t flame at tick `now`?
-FW_SHARED_FN bool flames(uint t, uint now, uint flameTicks) {
+FW_FN bool flames(uint t, uint now, uint flameTicks) {
     return isSource(t) && t <= now && (flameTicks == kNoneTexel || now - t < flameTicks);
 }
 
 // Modulo 2^32: exact while the sum fits, and never undefined.
-FW_SHARED_FN uint squaredLength(ivec3 a) {
+FW_FN uint squaredLength(ivec3 a) {
     return uint(a.x) * uint(a.x) + uint(a.y) * uint(a.y) + uint(a.z) * uint(a.z);
 }
-FW_SHARED_FN int dotInt(ivec3 a, ivec3 b) {
+FW_FN int dotInt(ivec3 a, ivec3 b) {
     return int(uint(a.x) * uint(b.x) + uint(a.y) * uint(b.y) + uint(a.z) * uint(b.z));
 }
 
 // Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one; integers
 // correct it.
-FW_SHARED_FN uint isqrtNear(uint n) {
+FW_FN uint isqrtNear(uint n) {
 #ifdef __cplusplus
     uint r = uint(int(std::sqrt(float(n))));
 #else
@@ -79,32 +79,32 @@ FW_SHARED_FN uint isqrtNear(uint n) {
 }
 
 // (a * b) >> s, 0 < s < 32; saturates.
-FW_SHARED_FN uint mulShift(uint a, uint b, uint s) {
+FW_FN uint mulShift(uint a, uint b, uint s) {
     uint high, low;
     umulExtended(a, b, high, low);
     return (high >> s) != 0u ? 0xFFFFFFFFu : ((high << (32u - s)) | (low >> s));
 }
 // (a * b) >> 32, rounded.
-FW_SHARED_FN uint mulHighRound(uint a, uint b) {
+FW_FN uint mulHighRound(uint a, uint b) {
     uint high, low;
     umulExtended(a, b, high, low);
     return high + (low >> 31u);
 }
 
 // Signed 11:11:10 (1023, 1023, 511 = 1) to Q14.
-FW_SHARED_FN ivec3 decodeNormal(uint packedNormal) {
+FW_FN ivec3 decodeNormal(uint packedNormal) {
     int x = int(packedNormal << 21u) >> 21;
     int y = int(packedNormal << 10u) >> 21;
     int z = int(packedNormal) >> 22;
     return ivec3((x * 16400 + 512) >> 10, (y * 16400 + 512) >> 10, (z * 32832 + 512) >> 10);
 }
 
-FW_SHARED_FN ivec3 decodePosition(uvec2 texel) {
+FW_FN ivec3 decodePosition(uvec2 texel) {
     return ivec3(int(texel.x & 0xFFFFu), int(texel.x >> 16u), int(texel.y & 0xFFFFu));
 }
 
 // Spread law at one texel. normal: Q14; noise: Q7 slowness factor, not 0.
-FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMaterial) m) {
+FW_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMaterial) m) {
     FrontDrive p;
     ivec3 drive = ivec3(m.driveX, m.driveY, m.driveZ);
     ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
@@ -152,18 +152,18 @@ FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMateria
 
 // Travel time, 1/16 ticks, over a link in 1/8 units. square, along: the link's square and its
 // product with p.e.
-FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontDrive) p) {
+FW_FN int travelTime(uint square, uint along, FW_IN(FrontDrive) p) {
     int y = int((isqrtNear(square) << 14u) - along);
     uint t = mulHighRound(p.A, uint(y > 0 ? y : 0));
     return int(t < uint(kFrontTimeMax) ? t : uint(kFrontTimeMax));
 }
 // link8: own position minus the source's, 1/8 units.
-FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontDrive) p) {
+FW_FN int linkCost(ivec3 link8, FW_IN(FrontDrive) p) {
     return travelTime(squaredLength(link8), uint(dotInt(link8, p.e)), p);
 }
 
 // Start time of fire at the point between two sources: a with weight w/64, b with the rest.
-FW_SHARED_FN int pairStart(int ra, int rb, int w) {
+FW_FN int pairStart(int ra, int rb, int w) {
     int dr = ra - rb;
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
@@ -171,8 +171,8 @@ FW_SHARED_FN int pairStart(int ra, int rb, int w) {
 // Slope of the travel time from source a to source b, 1/16 ticks over the whole distance.
 // Arrival is convex along it: if the slope does not outweigh the delay of b, a alone is best. l:
 // length of a, 1/8 units.
-FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay
-FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontDrive) p) {
+FW_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay
+FW_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontDrive) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
     if (l == 0u) return kPairFalls;
     // Change of distance over the whole segment at this rate: side . a / |a|, in whole units.
@@ -187,7 +187,7 @@ FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontDrive) p) {
 
 // Best arrival over the segment between two sources: three weights, one parabola step, one more.
 // The ends cost ga and gb.
-FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontDrive) p) {
+FW_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontDrive) p) {
     // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
     ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
     uint bb = squaredLength(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squaredLength(d) * 4u;
@@ -231,8 +231,8 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW
 // Sources of the ring that count: burning by the window's end, and not diagonals cut off by two
 // barriers. Bit k of `present`: the ring has a k-th texel. `wake` is lowered to the tick of a
 // coming source; it matters for receptive texels only, here and in frontArrival.
-FW_SHARED_FN uint countingSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
-                                  FW_INOUT(uint) wake) {
+FW_FN uint countingSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
+                           FW_INOUT(uint) wake) {
     uint counts = 0u, walls = 0u;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         uint t = ring.tick[k];
@@ -275,9 +275,9 @@ ivec3 pickLink(FrontRing ring, int k) {
 // again under another wind: until then the texel's tile stays listed. settles: also computes
 // `settledFrom`, the tick from which another source of this ring would not change the result;
 // kNever: unknown. It needs all eight links.
-FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontDrive) p,
-                               uint windowMax, uint windowEnd, uint floorTick, uint texel,
-                               bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
+FW_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontDrive) p, uint windowMax,
+                        uint windowEnd, uint floorTick, uint texel, bool settles,
+                        FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
     int cost[8];
     uint base = kNever;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
@@ -353,17 +353,17 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontDr
     return base + (uint(best + int(hash32(texel) & 15u)) >> 4u);
 }
 
-FW_SHARED_FN uint windowFloor(uint now, uint window) { return now > window ? now - window : 0u; }
+FW_FN uint windowFloor(uint now, uint window) { return now > window ? now - window : 0u; }
 
 // May this texel still change? It is receptive, or young enough for a correction.
-FW_SHARED_FN bool isFrontEligible(uint t, uint floorTick) {
+FW_FN bool isFrontEligible(uint t, uint floorTick) {
     return isReceptive(t) || (isSource(t) && (t > floorTick || floorTick == 0u));
 }
 
 // State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending
 // arrival. late: 1 if the candidate came too late and was moved to the window's floor.
-FW_SHARED_FN uint decideTick(uint t, uint candidate, uint windowEnd, uint floorTick,
-                              FW_INOUT(uint) wake, FW_OUT(uint) late) {
+FW_FN uint decideTick(uint t, uint candidate, uint windowEnd, uint floorTick, FW_INOUT(uint) wake,
+                      FW_OUT(uint) late) {
     late = 0u;
     bool fresh = isReceptive(t);
     if (candidate == kNever || (!fresh && candidate >= t)) return t;
@@ -381,16 +381,16 @@ FW_SHARED_FN uint decideTick(uint t, uint candidate, uint windowEnd, uint floorT
 
 // Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in
 // every 2^(stepShift - shift)-th iteration.
-FW_SHARED_FN bool runsInIteration(uint k, uint stepShift, uint shift) {
+FW_FN bool runsInIteration(uint k, uint stepShift, uint shift) {
     uint skip = stepShift - (shift < stepShift ? shift : stepShift);
     return (k & ((1u << skip) - 1u)) == 0u;
 }
-FW_SHARED_FN uint windowTicks(uint stepShift, uint shift) {
+FW_FN uint windowTicks(uint stepShift, uint shift) {
     return kStepTicks >> (shift < stepShift ? shift : stepShift);
 }
 
 // End tick of the window of iteration k for an object with `shift`.
-FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift) {
+FW_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift) {
     uint own = shift < stepShift ? shift : stepShift;
     return stepNow + ((k >> (stepShift - own)) + 1u) * (kStepTicks >> own);
 }
@@ -398,12 +398,12 @@ FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift)
 // Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that
 // may still be corrected is younger than the window, so its tile changed since. Unsigned:
 // kNeverChanged is far in the past.
-FW_SHARED_FN bool latchReaches(bool listed, uint lastChange, uint now, uint window) {
+FW_FN bool latchReaches(bool listed, uint lastChange, uint now, uint window) {
     return listed || now - lastChange <= window + kStepTicks;
 }
 
 // Grid neighbours of a tile that depend on a texel of this mask (lane = y * 8 + x), one bit each.
-FW_SHARED_FN uint dependentNeighbours(uint maskLow, uint maskHigh) {
+FW_FN uint dependentNeighbours(uint maskLow, uint maskHigh) {
     uint all = maskLow | maskHigh;
     bool right = (all & 0x80808080u) != 0u;
     bool left = (all & 0x01010101u) != 0u;

@@ -11,45 +11,45 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kFuelFull = 65535u;        // fuel of an unburnt texel
-FW_SHARED_CONST uint kBoiling = 5970u;          // 373 K, 1/16 K
-FW_SHARED_CONST uint kPyrolysisBegins = 6770u;  // 423 K: thick fuel begins to consume itself,
-FW_SHARED_CONST uint kPyrolysisSpan = 4800u;    // full rate 300 K above
-FW_SHARED_CONST uint kScorchBegins = 7568u;     // 473 K: begins to darken
-FW_SHARED_CONST uint kMaxFlux = 500000u;       // W/m^2, incoming or net: beyond any fire
-FW_SHARED_CONST uint kMaxFilm = 1023u;         // g/m^2
-FW_SHARED_CONST uint kMaxMoist = 255u;         // 1/128 kg/kg
+FW_CONST uint kFuelFull = 65535u;        // fuel of an unburnt texel
+FW_CONST uint kBoiling = 5970u;          // 373 K, 1/16 K
+FW_CONST uint kPyrolysisBegins = 6770u;  // 423 K: thick fuel begins to consume itself,
+FW_CONST uint kPyrolysisSpan = 4800u;    // full rate 300 K above
+FW_CONST uint kScorchBegins = 7568u;     // 473 K: begins to darken
+FW_CONST uint kMaxFlux = 500000u;       // W/m^2, incoming or net: beyond any fire
+FW_CONST uint kMaxFilm = 1023u;         // g/m^2
+FW_CONST uint kMaxMoist = 255u;         // 1/128 kg/kg
 // Steps of flaming under a film before the flame dies, minus one.
-FW_SHARED_CONST uint kSoakSteps = 3u;
-FW_SHARED_CONST uint kSleepTolerance = 16u;  // 1/16 K from ambient that still count as asleep
-FW_SHARED_CONST uint kColdWaterSteps =
+FW_CONST uint kSoakSteps = 3u;
+FW_CONST uint kSleepTolerance = 16u;  // 1/16 K from ambient that still count as asleep
+FW_CONST uint kColdWaterSteps =
     32u;  // steps from one update to the next of a tile that only has cold water
 // Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to
 // char, and a flux too small to heat it much (wood needs 10 kW/m^2 to catch).
-FW_SHARED_CONST uint kSleepShift = 3u;
-FW_SHARED_CONST uint kSleepSteps = 1u << kSleepShift;
-FW_SHARED_CONST uint kSleepFlux = 4096u;         // W/m^2: from here on it is updated every step
+FW_CONST uint kSleepShift = 3u;
+FW_CONST uint kSleepSteps = 1u << kSleepShift;
+FW_CONST uint kSleepFlux = 4096u;         // W/m^2: from here on it is updated every step
 // The longer interval below a flux of noon sun.
-FW_SHARED_CONST uint kLongSleepShift = 5u;
-FW_SHARED_CONST uint kLongSleepFlux = 1024u;          // W/m^2
+FW_CONST uint kLongSleepShift = 5u;
+FW_CONST uint kLongSleepFlux = 1024u;          // W/m^2
 
 // HeatTexel::phase
-FW_SHARED_CONST uint kPhaseFresh = 0u;
-FW_SHARED_CONST uint kPhaseBurning = 1u;
-FW_SHARED_CONST uint kPhaseBurnt = 2u;
-FW_SHARED_CONST uint kPhaseOut = 3u;            // extinguished, fuel left
+FW_CONST uint kPhaseFresh = 0u;
+FW_CONST uint kPhaseBurning = 1u;
+FW_CONST uint kPhaseBurnt = 2u;
+FW_CONST uint kPhaseOut = 3u;            // extinguished, fuel left
 
 // heatStep's result for its caller, which owns the front's state (bits).
-FW_SHARED_CONST uint kHeatIgnites = 1u;
-FW_SHARED_CONST uint kHeatExtinguishes = 2u;
-FW_SHARED_CONST uint kHeatBurnsOut = 4u;
-FW_SHARED_CONST uint kHeatDries = 8u;           // its film has dried
+FW_CONST uint kHeatIgnites = 1u;
+FW_CONST uint kHeatExtinguishes = 2u;
+FW_CONST uint kHeatBurnsOut = 4u;
+FW_CONST uint kHeatDries = 8u;           // its film has dried
 
 // HeatMaterial::flags
-FW_SHARED_CONST uint kHeatBurns = 1u;
-FW_SHARED_CONST uint kHeatThick = 2u;
+FW_CONST uint kHeatBurns = 1u;
+FW_CONST uint kHeatThick = 2u;
 // 9 bits, Q8: reduction of burning strength by lack of air.
-FW_SHARED_CONST uint kHeatLacksShift = 8u;
+FW_CONST uint kHeatLacksShift = 8u;
 
 struct HeatTexel {
     uint fuel;     // kFuelFull .. 0
@@ -88,14 +88,14 @@ struct HeatMaterial {     // one material for one step length and pace, baked by
     uint energy;          // of a fuel unit of one texel, 2^-20 J
     float watts;          // thick: W per fuel unit and step (cosmetic)
 };
-FW_SHARED_SIZE(HeatMaterial, 96)
+FW_SIZE(HeatMaterial, 96)
 
-FW_SHARED_FN uvec2 packHeat(FW_IN(HeatTexel) x) {
+FW_FN uvec2 packHeat(FW_IN(HeatTexel) x) {
     return uvec2(x.fuel | (x.heat << 16u), x.film | (x.soaked << 10u) | (x.moist << 12u) |
                                                (x.charred << 20u) | (x.epoch << 28u) |
                                                (x.phase << 30u));
 }
-FW_SHARED_FN HeatTexel unpackHeat(uvec2 words) {
+FW_FN HeatTexel unpackHeat(uvec2 words) {
     HeatTexel x;
     x.fuel = words.x & 0xFFFFu;
     x.heat = words.x >> 16u;
@@ -108,31 +108,31 @@ FW_SHARED_FN HeatTexel unpackHeat(uvec2 words) {
     return x;
 }
 
-FW_SHARED_FN uint minU(uint a, uint b) { return a < b ? a : b; }
-FW_SHARED_FN uint maxU(uint a, uint b) { return a > b ? a : b; }
+FW_FN uint minU(uint a, uint b) { return a < b ? a : b; }
+FW_FN uint maxU(uint a, uint b) { return a > b ? a : b; }
 
 // n / d, rounded up with the odds of the remainder: unbiased over many draws. n + d < 2^32.
-FW_SHARED_FN uint divideByChance(uint n, uint d, uint chance) {
+FW_FN uint divideByChance(uint n, uint d, uint chance) {
     uint part, low;
     umulExtended(chance, d, part, low);
     return divide(n + part, d);
 }
 
 // Black-body radiation, W/m^2, of 1/16 K: sigma T^4.
-FW_SHARED_FN uint radiation(uint heat) {
+FW_FN uint radiation(uint heat) {
     uint square = heat * heat;
     uint fourth, low;
     umulExtended(square, square, fourth, low);  // K^4 / 2^16
     return mulHighRound(fourth, 15960685u);     // sigma * 2^16, Q32
 }
 // Slope of radiation(), 4 sigma T^3, W/m^2/K, Q8.
-FW_SHARED_FN uint radiationSlope(uint heat) {
+FW_FN uint radiationSlope(uint heat) {
     uint cube = mulShift((heat * heat) >> 8u, heat, 16u);  // K^3 / 2^12
     return mulHighRound(cube, 1021483845u);                // 4 sigma * 2^20, Q32
 }
 
 // 2^-x, x and the result Q16.
-FW_SHARED_FN uint halvings(uint x) {
+FW_FN uint halvings(uint x) {
     uint whole = x >> 16u;
     if (whole > 16u) return 0u;
     uint f = x & 0xFFFFu;
@@ -146,7 +146,7 @@ FW_SHARED_FN uint halvings(uint x) {
 }
 
 // Share of the full pyrolysis rate at this temperature, Q12.
-FW_SHARED_FN uint pyrolysis(uint heat) {
+FW_FN uint pyrolysis(uint heat) {
     if (heat <= kPyrolysisBegins) return 0u;
     uint y = minU(divide((heat - kPyrolysisBegins) << 12u, kPyrolysisSpan), 4096u);
     return (((y * y) >> 12u) * (12288u - 2u * y)) >> 12u;
@@ -154,7 +154,7 @@ FW_SHARED_FN uint pyrolysis(uint heat) {
 
 // Fuel left of thin material after `age` ticks of flaming, of `burnTicks`: 1 - smoothstep, so its
 // rate rises and falls.
-FW_SHARED_FN uint thinFuel(uint age, uint burnTicks) {
+FW_FN uint thinFuel(uint age, uint burnTicks) {
     if (age >= burnTicks) return 0u;
     uint shift = 0u;
     while ((burnTicks >> shift) >= 65536u) shift += 1u;
@@ -164,7 +164,7 @@ FW_SHARED_FN uint thinFuel(uint age, uint burnTicks) {
     return kFuelFull - minU(gone * 2u, kFuelFull);
 }
 // Age at which this much fuel is left: a re-lit sheet continues from there.
-FW_SHARED_FN uint thinAge(uint fuel, uint burnTicks) {
+FW_FN uint thinAge(uint fuel, uint burnTicks) {
     uint low = 0u, high = burnTicks;
     while (low < high) {
         uint middle = low + (high - low) / 2u;
@@ -176,7 +176,7 @@ FW_SHARED_FN uint thinAge(uint fuel, uint burnTicks) {
 
 // Flux from a point source at a receiver, W/m^2: share * power * cosine / (4 pi d^2). power: W;
 // share: radiated fraction / (4 pi), Q16; cosine: Q8; distance2: cm^2, not 0.
-FW_SHARED_FN uint pointFlux(uint power, uint share, uint cosine, uint distance2) {
+FW_FN uint pointFlux(uint power, uint share, uint cosine, uint distance2) {
     uint sent = mulShift(power, share, 16u);  // W per sr
     uint whole = divide(sent, distance2);     // W/cm^2
     if (whole >= 0x10000u) return cosine == 0u ? 0u : kMaxFlux;
@@ -187,24 +187,24 @@ FW_SHARED_FN uint pointFlux(uint power, uint share, uint cosine, uint distance2)
 }
 
 // Adds water; more than the material's film runs off.
-FW_SHARED_FN void wetTexel(FW_INOUT(HeatTexel) x, uint grams, FW_IN(HeatMaterial) m) {
+FW_FN void wetTexel(FW_INOUT(HeatTexel) x, uint grams, FW_IN(HeatMaterial) m) {
     x.film = minU(x.film + minU(grams, kMaxFilm), minU(m.maxFilm, kMaxFilm));
 }
 
 // The material in air of this burning strength (airStrength): it consumes and heats itself less.
-FW_SHARED_FN HeatMaterial materialInAir(FW_IN(HeatMaterial) m, uint strength) {
+FW_FN HeatMaterial materialInAir(FW_IN(HeatMaterial) m, uint strength) {
     HeatMaterial weak = m;
     weak.ownFlux = (m.ownFlux * strength) >> 8u;
     weak.burnRate = mulShift(m.burnRate, strength, 8u);
     weak.flags |= (kAirFull - strength) << kHeatLacksShift;
     return weak;
 }
-FW_SHARED_FN uint airDeficit(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
-FW_SHARED_FN bool isSmothered(FW_IN(HeatMaterial) m) { return airDeficit(m) >= kAirFull; }
+FW_FN uint airDeficit(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
+FW_FN bool isSmothered(FW_IN(HeatMaterial) m) { return airDeficit(m) >= kAirFull; }
 
 // Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow;
 // ash has a quarter of that. rise: 1/16 K from ambient; size: W/m^2, net flux.
-FW_SHARED_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint rise, uint size) {
+FW_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint rise, uint size) {
     uint least = m.minCapacity >> (x.phase == kPhaseBurnt ? 2u : 0u);
     if (m.inertia == 0u || x.phase == kPhaseBurnt || (x.film != 0u && x.heat > kBoiling))
         return least;
@@ -212,13 +212,13 @@ FW_SHARED_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint r
     return minU(maxU(mulShift(m.inertia, reach, 8u), m.minCapacity), m.maxCapacity);
 }
 // W/m^2/K, Q8, against a change of temperature: capacity and losses, linearly implicit.
-FW_SHARED_FN uint heatResistance(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint capacity) {
+FW_FN uint heatResistance(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint capacity) {
     return maxU(capacity + m.convects + mulShift(radiationSlope(x.heat), m.radiates, 8u), 1u);
 }
 // Water takes `spare` W/m^2 beyond boiling: first the film, then the moisture. Returns what it
 // took.
-FW_SHARED_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spare, uint chance,
-                          FW_OUT(uint) evaporated) {
+FW_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spare, uint chance,
+                   FW_OUT(uint) evaporated) {
     evaporated =
         x.film == 0u ? 0u : minU(divideByChance(spare, m.filmFlux, hash32(chance)), x.film);
     x.film -= evaporated;
@@ -232,8 +232,8 @@ FW_SHARED_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spa
 // One step. flux: W/m^2 from other objects; air: wind gain of the burning rate, Q8, 256 = still;
 // pilot: a flame is near; chance: hash of texel and step. burnt: fuel units lost; evaporated: g/m^2
 // of film evaporated by fire. Returns kHeat bits, already applied to x.
-FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint air,
-                           bool pilot, uint chance, FW_OUT(uint) burnt, FW_OUT(uint) evaporated) {
+FW_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint air, bool pilot,
+                    uint chance, FW_OUT(uint) burnt, FW_OUT(uint) evaporated) {
     burnt = 0u;
     evaporated = 0u;
     uint result = 0u;
@@ -306,17 +306,17 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
 // ---- A texel and its state in the front. A texel under water, or too damp, is a barrier (kWet,
 // kOutWet) exactly while it is that.
 
-FW_SHARED_FN bool isBarrierByWater(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m) {
+FW_FN bool isBarrierByWater(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m) {
     return x.film != 0u || x.moist >= m.moistDies;
 }
-FW_SHARED_FN uint wetState(uint t, bool closed) {
+FW_FN uint wetState(uint t, bool closed) {
     if (t == kNever || t == kWet) return closed ? kWet : kNever;
     if (t == kOut || t == kOutWet) return closed ? kOutWet : kOut;
     return t;
 }
 
 // An unheated texel. Material that cannot burn counts as burnt.
-FW_SHARED_FN HeatTexel unheatedTexel(FW_IN(HeatMaterial) m, bool burns) {
+FW_FN HeatTexel unheatedTexel(FW_IN(HeatMaterial) m, bool burns) {
     HeatTexel x;
     x.fuel = kFuelFull;
     x.heat = m.ambient;
@@ -331,8 +331,7 @@ FW_SHARED_FN HeatTexel unheatedTexel(FW_IN(HeatMaterial) m, bool burns) {
 
 // A jet gives `flux` W/m^2 for one step, in addition to the step itself: first to the water, then
 // to the skin.
-FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux,
-                               uint chance) {
+FW_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint chance) {
     uint size = (minU(flux, kMaxFlux) * m.absorbs) >> 8u;
     uint rise = x.heat > m.ambient ? x.heat - m.ambient : 0u;
     uint resists = heatResistance(x, m, skinCapacity(x, m, rise, size));
@@ -348,26 +347,26 @@ FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uin
 
 // Does a texel let a jet pass that met it as a gate (TexelEvent)? No event of the step can change
 // the answer: neither phase nor ignition of a burnt-out texel changes.
-FW_SHARED_FN bool gateOpens(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
+FW_FN bool gateOpens(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
     bool gone =
         x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now && now - t >= holeTicks;
     return gone == ((gateKind & kGateShut) == 0u);
 }
 
 // State copied from a texel of another object; the material is the receiver's.
-FW_SHARED_FN HeatTexel carriedTexel(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m) {
+FW_FN HeatTexel carriedTexel(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m) {
     HeatTexel x = from;
     x.film = minU(x.film, minU(m.maxFilm, kMaxFilm));
     return x;
 }
 // Can states be copied between these texels? Both can burn, or neither can.
-FW_SHARED_FN bool carries(uint from, uint to) { return from != kInert && to != kInert; }
+FW_FN bool carries(uint from, uint to) { return from != kInert && to != kInert; }
 
 // Effect of one event on a texel and its state. Water alone does not extinguish: heat steps do,
 // when it takes more than the fire gives. tick: as TexelEvent, W/m^2 for kEventHeat; now: start of
 // the step.
-FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,
-                            uint tick, uint now) {
+FW_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind, uint tick,
+                     uint now) {
     if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
     if (kind == kEventWet) wetTexel(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
@@ -387,17 +386,17 @@ FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
 }
 
 // Random number per texel and step; `step`: a hash of the step's tick.
-FW_SHARED_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
+FW_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
 
 // How often heat steps update a texel: never (0), at intervals if it has cold water
 // (kWorkColdWater) or is only warm (kWorkWarm), or always (kWorkAlways).
-FW_SHARED_CONST uint kWorkColdWater = 1u;
-FW_SHARED_CONST uint kWorkWarm = 2u;
-FW_SHARED_CONST uint kWorkAlways = 4u;
-FW_SHARED_FN uint workOfFlux(uint flux) {
+FW_CONST uint kWorkColdWater = 1u;
+FW_CONST uint kWorkWarm = 2u;
+FW_CONST uint kWorkAlways = 4u;
+FW_FN uint workOfFlux(uint flux) {
     return flux == 0u ? 0u : flux < kSleepFlux ? kWorkWarm : kWorkAlways;
 }
-FW_SHARED_FN uint workOfTexel(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) {
+FW_FN uint workOfTexel(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) {
     uint off = x.heat > ambient ? x.heat - ambient : ambient - x.heat;
     bool warm = off > kSleepTolerance || flux != 0u;
     bool flames = x.phase == kPhaseBurning || (isSource(t) && x.phase != kPhaseBurnt);
@@ -407,8 +406,8 @@ FW_SHARED_FN uint workOfTexel(FW_IN(HeatTexel) x, uint t, uint flux, uint ambien
 }
 
 // One heat step at tick `now` of a texel with state t. Returns the new state. burnt: fuel units.
-FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint now,
-                                uint flux, bool pilot, uint air, uint chance, FW_OUT(uint) burnt) {
+FW_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint now, uint flux,
+                         bool pilot, uint air, uint chance, FW_OUT(uint) burnt) {
     bool lit = isSource(t) && t <= now;
     bool fresh = lit && (x.phase == kPhaseFresh || x.phase == kPhaseOut);  // the front lit it
     if (fresh) {
@@ -442,10 +441,8 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
 }
 
 // The material over all steps of a sleep interval at once; a burning texel takes one step.
-FW_SHARED_FN uint sleepShift(uint flux) {
-    return flux < kLongSleepFlux ? kLongSleepShift : kSleepShift;
-}
-FW_SHARED_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
+FW_FN uint sleepShift(uint flux) { return flux < kLongSleepFlux ? kLongSleepShift : kSleepShift; }
+FW_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
     uint shift = rests ? sleepShift(flux) : 0u;
     HeatMaterial long_ = m;
     long_.inertia = m.inertia == 0u ? 0u : maxU(m.inertia >> shift, 1u);
@@ -457,7 +454,7 @@ FW_SHARED_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool rests, ui
     return long_;
 }
 // The same for cold water, once in kColdWaterSteps steps.
-FW_SHARED_FN uint dryColdWater(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
+FW_FN uint dryColdWater(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
     uint dries = m.airDries * kColdWaterSteps;
     uint dried = (dries >> 16u) + ((dries & 0xFFFFu) > (chance & 0xFFFFu) ? 1u : 0u);
     x.film -= minU(dried, x.film);
@@ -467,21 +464,21 @@ FW_SHARED_FN uint dryColdWater(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uin
 // Work classes of a tile that are due in this step. A tile's flux changes only where an interval of
 // kSleepSteps steps ends, so the interval has one flux. Where a change alters the interval, some
 // steps count twice or never, equally often.
-FW_SHARED_FN bool sleepEnds(uint tile, uint flux, uint now) {
+FW_FN bool sleepEnds(uint tile, uint flux, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + 1u;
     return ((turn - tile) & ((1u << sleepShift(flux)) - 1u)) == 0u;
 }
-FW_SHARED_FN bool coldWaterTurn(uint object, uint tile, uint now) {
+FW_FN bool coldWaterTurn(uint object, uint tile, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + hash32(object * 0x9E3779B9u + tile);
     return (turn & (kColdWaterSteps - 1u)) == 0u;
 }
-FW_SHARED_FN uint workDue(bool warm, uint object, uint tile, uint flux, uint now) {
+FW_FN uint workDue(bool warm, uint object, uint tile, uint flux, uint now) {
     return (warm ? kWorkAlways : 0u) | (sleepEnds(tile, flux, now) ? kWorkWarm : 0u) |
            (coldWaterTurn(object, tile, now) ? kWorkColdWater : 0u);
 }
 // Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an
 // ordinary one. The texel is due if (work & turn) is not 0.
-FW_SHARED_FN uint workThisStep(uint work, uint turn) {
+FW_FN uint workThisStep(uint work, uint turn) {
     return work == kWorkColdWater && (turn & kWorkAlways) != 0u ? kWorkAlways : work;
 }
 

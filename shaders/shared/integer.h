@@ -6,7 +6,7 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_FN uint hash32(uint x) {
+FW_FN uint hash32(uint x) {
     x ^= x >> 16u;
     x *= 0x7feb352du;
     x ^= x >> 15u;
@@ -15,12 +15,12 @@ FW_SHARED_FN uint hash32(uint x) {
 }
 
 // Hash of x in [0, 1).
-FW_SHARED_FN float hashUnit(uint x) { return float(hash32(x) >> 8) * (1.0f / 16777216.0f); }
-FW_SHARED_FN float saturate(float x) { return clamp(x, 0.0f, 1.0f); }
+FW_FN float hashUnit(uint x) { return float(hash32(x) >> 8) * (1.0f / 16777216.0f); }
+FW_FN float saturate(float x) { return clamp(x, 0.0f, 1.0f); }
 
 // n / d, exact, d > 0. Software devices lack integer division: floats estimate from below (short by
 // 2 millionths and one, at most), integers correct.
-FW_SHARED_FN uint divide(uint n, uint d) {
+FW_FN uint divide(uint n, uint d) {
 #ifdef __cplusplus
     return n / d;
 #else

@@ -8,36 +8,36 @@
 FW_SHARED_BEGIN
 
 // Pattern of the unburnt material where no image is given.
-FW_SHARED_CONST uint kBasePlain = 0u;
-FW_SHARED_CONST uint kBaseWood = 1u;
-FW_SHARED_CONST uint kBasePaint = 2u;
-FW_SHARED_CONST uint kBasePaper = 3u;
-FW_SHARED_CONST uint kBasePrint = 4u;
-FW_SHARED_CONST uint kBaseWeave = 5u;
-FW_SHARED_CONST uint kBaseLeaf = 6u;
-FW_SHARED_CONST uint kBaseStraw = 7u;
-FW_SHARED_CONST uint kBaseLeather = 8u;
-FW_SHARED_CONST uint kBasePlastic = 9u;
-FW_SHARED_CONST uint kBaseStone = 10u;
+FW_CONST uint kBasePlain = 0u;
+FW_CONST uint kBaseWood = 1u;
+FW_CONST uint kBasePaint = 2u;
+FW_CONST uint kBasePaper = 3u;
+FW_CONST uint kBasePrint = 4u;
+FW_CONST uint kBaseWeave = 5u;
+FW_CONST uint kBaseLeaf = 6u;
+FW_CONST uint kBaseStraw = 7u;
+FW_CONST uint kBaseLeather = 8u;
+FW_CONST uint kBasePlastic = 9u;
+FW_CONST uint kBaseStone = 10u;
 
 // Variants of the surface pass: families of materials, and states.
-FW_SHARED_CONST uint kSurfaceWood = 1u;   // char blocks, grain
-FW_SHARED_CONST uint kSurfaceSheet = 2u;  // paper, cloth: sparks, wrinkles
-FW_SHARED_CONST uint kSurfacePlant = 4u;  // leaf, straw
-FW_SHARED_CONST uint kSurfaceHide = 8u;   // leather, plastic
-FW_SHARED_CONST uint kSurfaceBurns = 16u; // an event has reached the object
-FW_SHARED_CONST uint kSurfacePaint = 32u; // on wood: film, blisters
-FW_SHARED_CONST uint kSurfaceImage = 64u; // the object's image instead of a pattern
-FW_SHARED_CONST uint kSurfaceCold = 128u; // only triangles far from all traces of fire
+FW_CONST uint kSurfaceWood = 1u;   // char blocks, grain
+FW_CONST uint kSurfaceSheet = 2u;  // paper, cloth: sparks, wrinkles
+FW_CONST uint kSurfacePlant = 4u;  // leaf, straw
+FW_CONST uint kSurfaceHide = 8u;   // leather, plastic
+FW_CONST uint kSurfaceBurns = 16u; // an event has reached the object
+FW_CONST uint kSurfacePaint = 32u; // on wood: film, blisters
+FW_CONST uint kSurfaceImage = 64u; // the object's image instead of a pattern
+FW_CONST uint kSurfaceCold = 128u; // only triangles far from all traces of fire
 
 // Layers of the appearance texture array: 512^2 RGBA8, tiling, with mips.
-FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
+FW_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
 // R primary crack distance, G secondary, BA slopes of cracks.
-FW_SHARED_CONST float kLayerChar = 1.0f;
-FW_SHARED_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
-FW_SHARED_CONST float kLookTextureSide = 512.0f;
-FW_SHARED_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
-FW_SHARED_CONST float kCrumpleSlopeRange = 48.0f; // per tile, at texel value 1
+FW_CONST float kLayerChar = 1.0f;
+FW_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
+FW_CONST float kLookTextureSide = 512.0f;
+FW_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
+FW_CONST float kCrumpleSlopeRange = 48.0f; // per tile, at texel value 1
 
 struct MaterialAppearance {        // zero switches a feature off
     float spreadRate;        // m/s at which the seconds below were tuned
@@ -101,7 +101,7 @@ struct MaterialAppearance {        // zero switches a feature off
     float flame;             // flame height relative to wood
     float smoke;             // smoke relative to wood
 };
-FW_SHARED_SIZE(MaterialAppearance, 224)
+FW_SIZE(MaterialAppearance, 224)
 
 struct ViewParams {          // uniform block, one per view
     vec4 clip0;              // columns of camera-relative world to clip space
@@ -124,27 +124,25 @@ struct ViewParams {          // uniform block, one per view
     vec4 quads;  // x: visible share of flames and particles; y: widening that compensates it; z:
                  // share of its own fires that the last light represents
 };
-FW_SHARED_SIZE(ViewParams, 240)
+FW_SIZE(ViewParams, 240)
 
 // Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1,
 // with a short fade so that no item pops.
-FW_SHARED_FN float shownShare(float share, float own) {
-    return saturate((share - own) * 12.0f + share);
-}
+FW_FN float shownShare(float share, float own) { return saturate((share - own) * 12.0f + share); }
 
 // Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
-FW_SHARED_CONST float kWhiteLuminance = 40.0f;
+FW_CONST float kWhiteLuminance = 40.0f;
 
-FW_SHARED_CONST uint kAppearanceRows = 16u; // of the appearance table
+FW_CONST uint kAppearanceRows = 16u; // of the appearance table
 
 // kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their
 // corners: no point is farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most
 // kColdReach.
-FW_SHARED_CONST float kColdReach = 12.0f;
-FW_SHARED_FN float coldReach(float edge) { return 0.58f * edge + 1.5f; }
+FW_CONST float kColdReach = 12.0f;
+FW_FN float coldReach(float edge) { return 0.58f * edge + 1.5f; }
 
 // Only the strongest lights light surfaces.
-FW_SHARED_CONST uint kSurfaceLights = 16u;
+FW_CONST uint kSurfaceLights = 16u;
 
 // Push constants of the surface pass: one object, one material. Per-draw constants never come from
 // storage buffers: software devices gather those word by word and lane by lane.
@@ -171,26 +169,26 @@ struct SurfaceDraw {
     // With kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach.
     float nearness;
 };
-FW_SHARED_SIZE(SurfaceDraw, 128)
+FW_SIZE(SurfaceDraw, 128)
 // SurfaceDraw::flags beyond kObject...: triangles are small, flames light their corners.
-FW_SHARED_CONST uint kDrawVertexLight = 0x10000u;
+FW_CONST uint kDrawVertexLight = 0x10000u;
 // Vertices come from the refinement's positions.
-FW_SHARED_CONST uint kDrawPlaced = 0x20000u;
+FW_CONST uint kDrawPlaced = 0x20000u;
 // Temperature and char depth come from its heat buffer.
-FW_SHARED_CONST uint kDrawHeat = 0x40000u;
+FW_CONST uint kDrawHeat = 0x40000u;
 // Water or heat from other objects has reached it.
-FW_SHARED_CONST uint kDrawWet = 0x80000u;
+FW_CONST uint kDrawWet = 0x80000u;
 // It chars through from the surface.
-FW_SHARED_CONST uint kDrawThick = 0x100000u;
+FW_CONST uint kDrawThick = 0x100000u;
 // Holes are cut out of the triangles: vertices hold the time until each point burns through.
-FW_SHARED_CONST uint kDrawCut = 0x200000u;
+FW_CONST uint kDrawCut = 0x200000u;
 // Walls along open edges without cut triangles: texels hold the time until each point burns
 // through.
-FW_SHARED_CONST uint kDrawPerPixelHoles = 0x400000u;
+FW_CONST uint kDrawPerPixelHoles = 0x400000u;
 // Placed vertices on the inner skin.
-FW_SHARED_CONST uint kDrawInner = 0x800000u;
+FW_CONST uint kDrawInner = 0x800000u;
 // Share of a wall by which refined faces recede; the rest is char, visible at rims.
-FW_SHARED_CONST float kRefineRecede = 0.6f;
+FW_CONST float kRefineRecede = 0.6f;
 
 struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m
@@ -201,37 +199,37 @@ struct FlameQuad {
     float kelvin;            // K of the hottest part; kQuadSmoke: share lit by fire, [0, 1]
     uint kind;               // kQuad... | seed << 2 | flipbook + 1 << 18 (0: none) | kQuadEmits
 };
-FW_SHARED_SIZE(FlameQuad, 48)
+FW_SIZE(FlameQuad, 48)
 
-FW_SHARED_CONST uint kQuadTongue = 0u;  // of a burning tile
-FW_SHARED_CONST uint kQuadSmoke = 1u;
-FW_SHARED_CONST uint kQuadFire = 2u;    // of a particle
-FW_SHARED_CONST uint kQuadSpark = 3u;
-FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
-FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
-FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
+FW_CONST uint kQuadTongue = 0u;  // of a burning tile
+FW_CONST uint kQuadSmoke = 1u;
+FW_CONST uint kQuadFire = 2u;    // of a particle
+FW_CONST uint kQuadSpark = 3u;
+FW_CONST uint kQuadSeed = 2u;   // shifts
+FW_CONST uint kQuadFlipbookShift = 18u;
+FW_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
 // Half widths by which flame quads are nearer to the camera: a wall behind does not cut them.
-FW_SHARED_CONST float kQuadNearer = 0.35f;
+FW_CONST float kQuadNearer = 0.35f;
 
 // Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads
 // are first those of burning tiles (at most kFlameCapacity), then of particles, then emissive ones:
 // sparks, and flipbook fire that hides nothing. Emissive quads are not sorted but placed between
 // those that hide, farthest first.
-FW_SHARED_CONST uint kFlameTileQuads = 4u;       // word: requested quads of tiles
-FW_SHARED_CONST uint kFlameParticleQuads = 5u;   // word: quads of particles that hide
-FW_SHARED_CONST uint kFlameEmissiveQuads = 6u;      // word: emissive quads
+FW_CONST uint kFlameTileQuads = 4u;       // word: requested quads of tiles
+FW_CONST uint kFlameParticleQuads = 5u;   // word: quads of particles that hide
+FW_CONST uint kFlameEmissiveQuads = 6u;      // word: emissive quads
 // words: draw arguments of the emissive quads, in buffer order.
-FW_SHARED_CONST uint kFlameEmissiveDraw = 8u;
-FW_SHARED_CONST uint kFlameOrder = 12u;      // first word of the order
-FW_SHARED_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads
-FW_SHARED_CONST uint kMaxQuads = 65536u;    // of all
-FW_SHARED_CONST uint kMaxFewQuads = 2048u;  // capacity of the sort in shared memory
+FW_CONST uint kFlameEmissiveDraw = 8u;
+FW_CONST uint kFlameOrder = 12u;      // first word of the order
+FW_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads
+FW_CONST uint kMaxQuads = 65536u;    // of all
+FW_CONST uint kMaxFewQuads = 2048u;  // capacity of the sort in shared memory
 
 // Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are
 // as thin as a pixel and are drawn at full resolution.
-FW_SHARED_CONST uint kPartAll = 0u;
-FW_SHARED_CONST uint kPartSoft = 1u;
-FW_SHARED_CONST uint kPartSparks = 2u;
+FW_CONST uint kPartAll = 0u;
+FW_CONST uint kPartSoft = 1u;
+FW_CONST uint kPartSparks = 2u;
 
 struct SortPush {
     uint tiles;      // quads of tiles, at most
@@ -239,13 +237,13 @@ struct SortPush {
     uint lights;     // of those that emit alone, at most
     uint few;        // to sort, <= kMaxFewQuads: more use the radix sort
 };
-FW_SHARED_SIZE(SortPush, 16)
+FW_SIZE(SortPush, 16)
 
 // Hash grid of heat-release clusters: kLightCellHeader words, then cells of kLightCellWords.
-FW_SHARED_CONST uint kLightCells = 4096u;
+FW_CONST uint kLightCells = 4096u;
 // Key, power / 16 W, 3 weighted offsets, area / 0.1 cm^2, side, 3 cell coordinates, level, unused.
-FW_SHARED_CONST uint kLightCellWords = 12u;
-FW_SHARED_CONST uint kLightCellHeader = 16u; // [0]: requested quads, in 1/16
+FW_CONST uint kLightCellWords = 12u;
+FW_CONST uint kLightCellHeader = 16u; // [0]: requested quads, in 1/16
 
 FW_SHARED_END
 #endif

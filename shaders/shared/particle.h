@@ -10,22 +10,22 @@ FW_SHARED_BEGIN
 
 // An emitter's particles form a ring: the k-th spawned particle lies at k mod `ring` after `first`.
 // Nothing is allocated or freed, and every device makes the same particles.
-FW_SHARED_CONST uint kParticleGroup = 1024u;  // ring slots that a group of 64 threads handles
-FW_SHARED_CONST uint kMaxEmitters = 256u;
-FW_SHARED_CONST float kMaxParticleStep = 0.0334f;  // s; longer frames take several steps
-FW_SHARED_CONST uint kMaxParticleSteps = 32u;
+FW_CONST uint kParticleGroup = 1024u;  // ring slots that a group of 64 threads handles
+FW_CONST uint kMaxEmitters = 256u;
+FW_CONST float kMaxParticleStep = 0.0334f;  // s; longer frames take several steps
+FW_CONST uint kMaxParticleSteps = 32u;
 
 // m: when the world's origin shifts, eddies shift along, modulo this.
-FW_SHARED_CONST float kEddyField = 4096.0f;
-FW_SHARED_CONST uint kNoBurnRow = 0xFFFFFFFFu;
-FW_SHARED_CONST uint kTileTries = 32u;  // tiles that a birth samples, at most, and
-FW_SHARED_CONST uint kTileChoice = 6u;  // of its mesh among them, chosen by power
+FW_CONST float kEddyField = 4096.0f;
+FW_CONST uint kNoBurnRow = 0xFFFFFFFFu;
+FW_CONST uint kTileTries = 32u;  // tiles that a birth samples, at most, and
+FW_CONST uint kTileChoice = 6u;  // of its mesh among them, chosen by power
 
 // ParticleEmitter::flags
-FW_SHARED_CONST uint kEmitterHidden = 1u;
-FW_SHARED_CONST uint kEmitterGround = 2u;  // particles land on `carried.w`
-FW_SHARED_CONST uint kEmitterJet = 4u;     // a stream of liquid that breaks up into flame
-FW_SHARED_CONST uint kEmitterEmits = 8u;   // flipbooks show its fire and hide nothing
+FW_CONST uint kEmitterHidden = 1u;
+FW_CONST uint kEmitterGround = 2u;  // particles land on `carried.w`
+FW_CONST uint kEmitterJet = 4u;     // a stream of liquid that breaks up into flame
+FW_CONST uint kEmitterEmits = 8u;   // flipbooks show its fire and hide nothing
 
 struct ParticleEmitter {  // one emitter in one frame
     vec4 from;       // m, world: position at the last frame's end; w: s, length of this frame
@@ -63,7 +63,7 @@ struct ParticleEmitter {  // one emitter in one frame
     vec4 obstacles[64]; // m, world, and radius; unit normal: obstacles of a jet
     vec4 patches[32]; // m, world, and cumulative share; unit normal: where fuel sticks
 };
-FW_SHARED_SIZE(ParticleEmitter, 1840)
+FW_SIZE(ParticleEmitter, 1840)
 
 struct Particle {
     vec4 placeAge;   // m, world; s, < 0: no longer at rest
@@ -78,8 +78,8 @@ struct ParticleWords {  // packed: each word costs a load and a store per frame
     uint hit;     // octahedron 8 + 8 bits; 1/1024 s, kNoHit: none
     float path;   // m; if the emitter's particles grow with it
 };
-FW_SHARED_SIZE(ParticleWords, 32)
-FW_SHARED_CONST uint kNoHit = 0xFFFFu;
+FW_SIZE(ParticleWords, 32)
+FW_CONST uint kNoHit = 0xFFFFu;
 
 struct ParticlePush {
     uint quads;      // visible, at most
@@ -88,22 +88,20 @@ struct ParticlePush {
     uint burnRow;    // counters row with the number of burning tiles; kNoBurnRow: none
     vec4 moved;      // m by which all positions shifted since the last frame
 };
-FW_SHARED_SIZE(ParticlePush, 32)
+FW_SIZE(ParticlePush, 32)
 
 // Standard deviation 1, at most 3.
-FW_SHARED_FN float particleGauss(uint x) {
+FW_FN float particleGauss(uint x) {
     uint a = hash32(x), b = hash32(x + 0x9e3779b9u);
     return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) *
            (2.0f / 65535.0f);
 }
 
-FW_SHARED_FN uint particleSpeedBits(float v) {
+FW_FN uint particleSpeedBits(float v) {
     return uint(int(clamp(v, -255.0f, 255.0f) * 4096.0f + (v < 0.0f ? -0.5f : 0.5f))) & 0x1FFFFFu;
 }
-FW_SHARED_FN float particleSpeedOf(uint bits) {
-    return float(int(bits << 11) >> 11) * (1.0f / 4096.0f);
-}
-FW_SHARED_FN uint particleHitBits(vec4 hit) {
+FW_FN float particleSpeedOf(uint bits) { return float(int(bits << 11) >> 11) * (1.0f / 4096.0f); }
+FW_FN uint particleHitBits(vec4 hit) {
     if (hit.w < 0.0f) return kNoHit << 16;
     vec3 n = vec3(hit);
     float sum = (n.x < 0.0f ? -n.x : n.x) + (n.y < 0.0f ? -n.y : n.y) + (n.z < 0.0f ? -n.z : n.z);
@@ -116,7 +114,7 @@ FW_SHARED_FN uint particleHitBits(vec4 hit) {
     return uint(x * 127.0f + 127.5f) | uint(y * 127.0f + 127.5f) << 8 |
            uint(min(hit.w * 1024.0f + 0.5f, 65534.0f)) << 16;
 }
-FW_SHARED_FN vec4 particleHitOf(uint bits) {
+FW_FN vec4 particleHitOf(uint bits) {
     uint since = bits >> 16;
     float x = float(bits & 0xFFu) * (1.0f / 127.0f) - 1.0f;
     float y = float(bits >> 8 & 0xFFu) * (1.0f / 127.0f) - 1.0f;
@@ -128,7 +126,7 @@ FW_SHARED_FN vec4 particleHitOf(uint bits) {
     return since == kNoHit ? vec4(0.0f, 0.0f, 0.0f, -1.0f)
                            : vec4(n, float(since) * (1.0f / 1024.0f));
 }
-FW_SHARED_FN ParticleWords particlePacked(Particle p) {
+FW_FN ParticleWords particlePacked(Particle p) {
     ParticleWords w;
     uint x = particleSpeedBits(p.speedPath.x), y = particleSpeedBits(p.speedPath.y);
     uint z = particleSpeedBits(p.speedPath.z);
@@ -139,7 +137,7 @@ FW_SHARED_FN ParticleWords particlePacked(Particle p) {
     w.path = p.speedPath.w;
     return w;
 }
-FW_SHARED_FN Particle particleUnpacked(ParticleWords w) {
+FW_FN Particle particleUnpacked(ParticleWords w) {
     Particle p;
     p.placeAge = w.placeAge;
     p.speedPath = vec4(particleSpeedOf(w.speed0 & 0x1FFFFFu),
@@ -150,15 +148,15 @@ FW_SHARED_FN Particle particleUnpacked(ParticleWords w) {
 }
 
 // Age of ring slot i in births: 0 is the newest. None: >= filled.
-FW_SHARED_FN uint particleBirths(uint head, uint ring, uint i) {
+FW_FN uint particleBirths(uint head, uint ring, uint i) {
     return i < head ? head - 1u - i : head + ring - 1u - i;
 }
-FW_SHARED_FN uint particleSeed(uint seed, uint serial) {
+FW_FN uint particleSeed(uint seed, uint serial) {
     return hash32(serial * 747796405u + seed * 2891336453u);
 }
 
 // Flipbook of a particle, + 1, from up to `most` bytes of a word; 0: none.
-FW_SHARED_FN uint particleFlipbook(uint bytes, uint most, uint seed) {
+FW_FN uint particleFlipbook(uint bytes, uint most, uint seed) {
     uint count = 0u;
     for (uint i = 0u; i < most; ++i) count += (bytes >> (8u * i) & 0xFFu) != 0u ? 1u : 0u;
     uint one = count > 0u ? hash32(seed + 31u) % count : 0u;
@@ -173,7 +171,7 @@ struct ParticleTraits {
     float own;      // [0, 1)
     float other;    // [0, 1)
 };
-FW_SHARED_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
+FW_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
     ParticleTraits t;
     float f = hashUnit(seed + 4u), f2 = f * f;
     t.life = e.life.x * (1.0f + e.life.y * (1.2f * f + 1.2f * f2 * f2 - 0.85f));
@@ -185,17 +183,17 @@ FW_SHARED_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
     return t;
 }
 
-FW_SHARED_FN vec3 particleAcross(vec3 d) {
+FW_FN vec3 particleAcross(vec3 d) {
     return normalize(
         cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f)));
 }
 // Point of a disc of radius `away` about n, at angle `turn`.
-FW_SHARED_FN vec3 particleDisc(vec3 n, float turn, float away) {
+FW_FN vec3 particleDisc(vec3 n, float turn, float away) {
     vec3 r = particleAcross(n), u = cross(r, n);
     return (r * cos(turn) + u * sin(turn)) * away;
 }
 // State at birth, `age` s before the frame's end.
-FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
+FW_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
     float back = e.from.w > 0.0f ? saturate(age / e.from.w) : 0.0f;
     vec3 d = vec3(e.direction);
     vec3 r = particleAcross(d), u = cross(r, d);
@@ -217,8 +215,8 @@ FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
 }
 
 // Moves it to a flaming tile of `area` m^2 around `at`.
-FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n,
-                                     float area) {
+FW_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n,
+                              float area) {
     float turn = 6.2831853f * hashUnit(seed + 41u);
     float away = 0.8f * sqrt(area * hashUnit(seed + 42u));
     p.placeAge = p.placeAge + vec4(at + particleDisc(n, turn, away) + n * (0.1f * e.size.x), 0.0f);
@@ -227,12 +225,10 @@ FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, v
     return p;
 }
 
-FW_SHARED_FN bool particleSticks(ParticleEmitter e, uint seed) {
-    return hashUnit(seed + 61u) < e.stuck.x;
-}
+FW_FN bool particleSticks(ParticleEmitter e, uint seed) { return hashUnit(seed + 61u) < e.stuck.x; }
 // Moves it to fuel that sticks at `at` on a surface with normal n, as a splash that has just
 // happened.
-FW_SHARED_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n) {
+FW_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n) {
     vec3 r = particleAcross(n), u = cross(r, n), up = vec3(e.up);
     float turn = 6.2831853f * hashUnit(seed + 62u);
     float away = 0.25f * sqrt(hashUnit(seed + 63u));
@@ -246,14 +242,14 @@ FW_SHARED_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, 
 }
 
 // Sine to 0.1 %: software devices have no instruction for it.
-FW_SHARED_FN float particleSine(float angle) {
+FW_FN float particleSine(float angle) {
     float x = angle * 0.15915494f;
     x -= floor(x + 0.5f);
     float y = x * (8.0f - 16.0f * (x < 0.0f ? -x : x));
     return y * (0.775f + 0.225f * (y < 0.0f ? -y : y));
 }
 // Divergence-free field of shear waves. Mean square about 1.
-FW_SHARED_FN vec3 particleEddies(vec3 x) {
+FW_FN vec3 particleEddies(vec3 x) {
     vec3 v = vec3(-0.62f, 0.0f, 0.78f) * particleSine(1.31f * x.x + 2.4f * x.y + 1.04f * x.z);
     v += vec3(0.51f, 0.86f, 0.0f) * particleSine(-2.2f * x.x + 1.305f * x.y + 0.9f * x.z + 1.3f);
     v += vec3(0.0f, -0.55f, 0.835f) * particleSine(1.7f * x.x + 2.05f * x.y + 1.35f * x.z + 4.1f);
@@ -262,8 +258,7 @@ FW_SHARED_FN vec3 particleEddies(vec3 x) {
     return v * 0.63f;
 }
 
-FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path,
-                                float own) {
+FW_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path, float own) {
     float a = age / t.life;
     float s = e.size.x + (e.size.y * path + e.size.z * age) *
                              mix(1.0f, 0.8f + 0.45f * own, saturate(a * 3.0f));
@@ -271,8 +266,7 @@ FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, 
 }
 
 // State `dt` later, at most kMaxParticleStep. now: s, cosmetic.
-FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now,
-                                   float dt) {
+FW_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now, float dt) {
     float a = p.placeAge.w / t.life, torn = smoothstep(0.15f, 0.6f, a);
     vec3 up = vec3(e.up), v = vec3(p.speedPath), at = vec3(p.placeAge);
     vec3 wind = vec3(e.wind), n = vec3(p.hit);
@@ -302,11 +296,11 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
     return p;
 }
 
-FW_SHARED_CONST float kSplashOff = 0.35f;  // m off the surface it hit, at most
+FW_CONST float kSplashOff = 0.35f;  // m off the surface it hit, at most
 // Collision at c with a surface of unit normal n: the tangential part continues, the rest turns
 // into a sheet that prefers the direction of arrival and up.
-FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
-                                     vec3 c, vec3 n, float size) {
+FW_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Particle p, uint seed, vec3 c,
+                              vec3 n, float size) {
     vec3 v = vec3(p.speedPath), up = vec3(e.up);
     float into = max(-dot(v, n), 0.0f);
     vec3 along = v + n * into;
@@ -329,7 +323,7 @@ FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Partic
 }
 
 // Where on a step's path it hits a disc, [0, 1]; 2: nowhere.
-FW_SHARED_FN float particleMeets(vec3 from, vec3 to, vec4 disc, vec3 n, float reach) {
+FW_FN float particleMeets(vec3 from, vec3 to, vec4 disc, vec3 n, float reach) {
     vec3 c = vec3(disc);
     float a = dot(from - c, n) - reach, b = dot(to - c, n) - reach;
     float f = a > 0.0f ? a / max(a - b, 1e-6f) : 0.0f;
@@ -339,22 +333,21 @@ FW_SHARED_FN float particleMeets(vec3 from, vec3 to, vec4 disc, vec3 n, float re
 }
 
 // m above the emitter's ground.
-FW_SHARED_FN float particleAbove(ParticleEmitter e, Particle p) {
+FW_FN float particleAbove(ParticleEmitter e, Particle p) {
     return dot(vec3(p.placeAge), vec3(e.up)) - e.carried.w;
 }
-FW_SHARED_FN bool particleLands(ParticleEmitter e, Particle p, float size, float above) {
+FW_FN bool particleLands(ParticleEmitter e, Particle p, float size, float above) {
     return (e.flags & kEmitterGround) != 0u && above < min(0.12f * size, 0.12f) &&
            dot(vec3(p.speedPath), vec3(e.up)) < 0.0f;
 }
 // m below the ground.
-FW_SHARED_FN float particleSunk(ParticleEmitter e, float above) {
+FW_FN float particleSunk(ParticleEmitter e, float above) {
     return (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
 }
 // Collision in a step from `from`: with an obstacle of its jet (at `share` of the step, at `disc`
 // with normal n) or, if share > 1, with the ground.
-FW_SHARED_FN Particle particleMet(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
-                                  vec3 from, float share, vec4 disc, vec3 n, float size,
-                                  float above) {
+FW_FN Particle particleMet(ParticleEmitter e, ParticleTraits t, Particle p, uint seed, vec3 from,
+                           float share, vec4 disc, vec3 n, float size, float above) {
     vec3 up = vec3(e.up), at = vec3(p.placeAge);
     vec3 c = at - up * above, normal = up;
     if (share <= 1.0f) {
@@ -367,36 +360,36 @@ FW_SHARED_FN Particle particleMet(ParticleEmitter e, ParticleTraits t, Particle 
 
 // ---- display, over a = age in lives
 
-FW_SHARED_FN float particleKelvin(ParticleEmitter e, float a, float own) {
+FW_FN float particleKelvin(ParticleEmitter e, float a, float own) {
     float root = 1.0f - smoothstep(0.0f, 0.30f, a);  // white hot, well mixed near the nozzle
     return mix(e.heat.x, e.heat.y, smoothstep(0.30f, 1.0f, a)) + 60.0f * root -
            120.0f * own * smoothstep(0.15f, 0.7f, a);
 }
-FW_SHARED_FN float particleFire(float a, float own) {
+FW_FN float particleFire(float a, float own) {
     return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) *
            (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
 }
-FW_SHARED_FN float particleQuarter(float x) { return x * sqrt(sqrt(x)); }  // x^1.25
-FW_SHARED_FN float particleSmoke(ParticleEmitter e, float a) {
+FW_FN float particleQuarter(float x) { return x * sqrt(sqrt(x)); }  // x^1.25
+FW_FN float particleSmoke(ParticleEmitter e, float a) {
     return smoothstep(0.65f, 1.05f, a) *
            particleQuarter(saturate((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
 }
-FW_SHARED_CONST float kPuffReach = 0.55f;  // of its particle's size, from its middle
+FW_CONST float kPuffReach = 0.55f;  // of its particle's size, from its middle
 // m by which a puff keeps off the wall that its particle hit: inside the wall it would end in a
 // straight line. It detaches as it begins to show. (The ground is handled by its height.)
-FW_SHARED_FN float particleOffWall(Particle p, vec3 up, float size, float a) {
+FW_FN float particleOffWall(Particle p, vec3 up, float size, float a) {
     float upright = dot(vec3(p.hit), up);
     float wall = p.hit.w >= 0.0f ? 1.0f - upright * upright : 0.0f;
     return wall * smoothstep(0.5f, 0.8f, a) * max(kPuffReach * size - kSplashOff * 0.5f, 0.0f);
 }
 // Length over width, and how far the quad follows the flight direction (1) or its own rotation (0).
 // across: m/s on the screen.
-FW_SHARED_FN float particleStretch(ParticleEmitter e, float a, float across, float hit) {
+FW_FN float particleStretch(ParticleEmitter e, float a, float across, float hit) {
     float k = saturate(across / max(e.half_.w, 0.1f));
     return hit >= 0.0f ? 1.0f + 0.7f * saturate(across / 5.0f) * exp(-hit * 3.0f)
                        : 1.0f + (e.size.w - 1.0f) * k * exp(-a * 5.5f);
 }
-FW_SHARED_FN float particleFollows(ParticleEmitter e, float a, float across, float hit) {
+FW_FN float particleFollows(ParticleEmitter e, float a, float across, float hit) {
     float k = saturate(across / max(e.half_.w, 0.1f));
     return (hit >= 0.0f ? 1.0f - smoothstep(0.2f, 0.6f, hit)
                         : 1.0f - 0.85f * smoothstep(0.25f, 0.65f, a)) *

@@ -13,7 +13,7 @@ FW_SHARED_BEGIN
 
 // Level at which a segment covers `pixels` on the screen. focal: pixels of 1 m at a distance of 1
 // m.
-FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels) {
+FW_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels) {
     vec3 middle = (a + b) * 0.5f;
     float d = distance(middle, eye);
     float da = distance(a, eye);
@@ -26,8 +26,8 @@ FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels
 }
 
 // Updates the heat times and sets the target. cool: s that a level outlives its heat.
-FW_SHARED_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth,
-                                  float now, float cool) {
+FW_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now,
+                           float cool) {
     if ((heat & kRefineHot) != 0u) s.lastHot = now;
     if ((heat & kRefineBurning) != 0u && s.burningSince > now) s.burningSince = now;
     bool kept = (heat & kRefineHot) != 0u || now - s.lastHot < cool;
@@ -35,32 +35,32 @@ FW_SHARED_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod,
 }
 
 // Order in which items lose levels: burning items last, then by number.
-FW_SHARED_FN float levelLossOrder(uint id, uint heat) {
+FW_FN float levelLossOrder(uint id, uint heat) {
     return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) + 0.45f * hashUnit(id);
 }
-FW_SHARED_FN float biasedLevel(float target, float bias, float spread) {
+FW_FN float biasedLevel(float target, float bias, float spread) {
     float less = bias - spread;
     float level = target - (less > 0.0f ? less : 0.0f);
     return level > 0.0f ? level : 0.0f;
 }
-FW_SHARED_CONST uint kRefineBiases = 16u;
-FW_SHARED_CONST float kRefineBiasStep = 0.4f;
+FW_CONST uint kRefineBiases = 16u;
+FW_CONST float kRefineBiasStep = 0.4f;
 
-FW_SHARED_FN uint topLevel(float level) {
+FW_FN uint topLevel(float level) {
     float l = level > 1e-4f ? level - 1e-4f : 0.0f;
     int whole = int(l);
     return uint(float(whole) < l ? whole + 1 : whole);
 }
 // Morph progress of the points of the top level from the middle of their parents.
-FW_SHARED_FN float levelMorphAge(float level, uint top) {
+FW_FN float levelMorphAge(float level, uint top) {
     float f = level - float(top) + 1.0f;
     return f < 1.0f ? f : 1.0f;
 }
 
 // Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per
 // s. grace: s of burning after which a surface is no longer flat.
-FW_SHARED_FN void moveRefineLevel(FW_INOUT(RefineLevel) s, float want, float now, float dt,
-                                  float rate, float grace) {
+FW_FN void moveRefineLevel(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate,
+                           float grace) {
     float step = rate * dt;
     bool flatStill = now - s.burningSince < grace;
     if (want > s.level) s.level = flatStill || s.level + step > want ? want : s.level + step;
@@ -69,7 +69,7 @@ FW_SHARED_FN void moveRefineLevel(FW_INOUT(RefineLevel) s, float want, float now
 
 // ---- positions
 
-FW_SHARED_FN vec3 refineOffset(uint offset) {
+FW_FN vec3 refineOffset(uint offset) {
     int x = int(offset << 21u) >> 21;
     int y = int(offset << 10u) >> 21;
     int z = int(offset) >> 22;
@@ -79,7 +79,7 @@ FW_SHARED_FN vec3 refineOffset(uint offset) {
 
 // Arrival at a slot, s since `epoch`, from the texels among its four that are lit by `now` (ticks).
 // Ticks may lie before the world began.
-FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
+FW_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
     float sum = 0.0f, weight = 0.0f;
     for (int k = 0; k < 4; ++k) {
         bool lit = ticks[k] < kLiveEnd && int(now - ticks[k]) >= 0;
@@ -90,7 +90,7 @@ FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uin
     return weight > 0.0f ? sum / weight * (1.0f / 4096.0f) : kRefineNever;
 }
 // Bilinear weights of the texels around a place between them.
-FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
+FW_FN uint refineOppositeWeights(uint opposite) {
     uint fx = (opposite >> 24u) & 15u, fy = opposite >> 28u;
     uint a = (16u - fx) * (16u - fy), b = fx * (16u - fy), c = (16u - fx) * fy, d = fx * fy;
     a = a > 255u ? 255u : a;
@@ -99,7 +99,7 @@ FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
 
 // When a wall burns through: `through` s after it is lit from one side; from both, when the fronts
 // meet.
-FW_SHARED_FN float burnThroughTime(float a, float b, float through) {
+FW_FN float burnThroughTime(float a, float b, float through) {
     float one = a < b ? a : b;
     if (one >= kRefineNever) return kRefineNever;
     float alone = one + through;
@@ -112,8 +112,8 @@ FW_SHARED_FN float burnThroughTime(float a, float b, float through) {
 
 // burnSeconds: of a wall of full thickness; negative: it never opens. recede: share of the slot's
 // reach, [0, 1).
-FW_SHARED_FN vec4 evaluateSlot(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
-                                 float burnSeconds, float recede) {
+FW_FN vec4 evaluateSlot(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
+                        float burnSeconds, float recede) {
     vec3 rest = vec3(s.x, s.y, s.z);
     float seconds = burnSeconds < 0.0f ? -burnSeconds : burnSeconds;
     float through = seconds * float(s.reach >> 16u) * (1.0f / 4096.0f);
@@ -126,14 +126,14 @@ FW_SHARED_FN vec4 evaluateSlot(FW_IN(RefineSlot) s, float arrival, float opposit
     return vec4(p.x, p.y, p.z, hole);
 }
 // Position on the inner skin: the slot at its full reach.
-FW_SHARED_FN vec3 refineInnerSkin(FW_IN(RefineSlot) s) {
+FW_FN vec3 refineInnerSkin(FW_IN(RefineSlot) s) {
     float depth = float(s.reach & 0xFFFFu) * 1e-5f;
     return vec3(s.x, s.y, s.z) + refineOffset(s.offset) * depth;
 }
 
 // ---- morph: a point of the top level starts in the middle of its parents
 
-FW_SHARED_FN vec3 refineMorph(vec3 own, vec3 a, vec3 b, float age) {
+FW_FN vec3 refineMorph(vec3 own, vec3 a, vec3 b, float age) {
     float k = age * age * (3.0f - 2.0f * age);
     vec3 middle = (a + b) * 0.5f;
     return middle + (own - middle) * k;
@@ -143,9 +143,9 @@ struct RefineParents {
     uint a1, a2, b1, b2;  // c1, c2 of both
 };
 // Is a lattice point of the top level only?
-FW_SHARED_FN bool refineIsNew(uint c1, uint c2) { return ((c1 | c2) & 1u) != 0u; }
+FW_FN bool refineIsNew(uint c1, uint c2) { return ((c1 | c2) & 1u) != 0u; }
 // Parents lie along the direction of the point's two odd coordinates.
-FW_SHARED_FN RefineParents refineParents(uint c1, uint c2) {
+FW_FN RefineParents refineParents(uint c1, uint c2) {
     RefineParents p;
     uint d1 = c1 & 1u, d2 = c2 & 1u;
     p.a1 = c1 - d1;
@@ -166,7 +166,7 @@ struct RefineSpot {  // a position on a side of a triangle's lattice
     float f;         // position in the segment
 };
 // Position of lattice point (c1, c2) of 2^m steps on the polyline of the edges.
-FW_SHARED_FN RefineSpot refineSpot(FW_IN(RefineTriangle) t, uint levels, uint c1, uint c2) {
+FW_FN RefineSpot refineSpot(FW_IN(RefineTriangle) t, uint levels, uint c1, uint c2) {
     RefineSpot spot;
     uint n = 1u << refineInterior(levels);
     uint c0 = n - c1 - c2;

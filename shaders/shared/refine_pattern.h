@@ -10,17 +10,17 @@ FW_SHARED_BEGIN
 // ---- patterns. A vertex code: 0x8000 | side << 8 | i, i in 0..2^l from the side's first corner;
 // or c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
 
-FW_SHARED_CONST uint kRefineOnSide = 0x8000u;
-FW_SHARED_FN uint refineOnSide(uint e, uint i) { return kRefineOnSide | (e << 8u) | i; }
-FW_SHARED_FN uint refineInside(uint c1, uint c2) { return (c1 << 6u) | c2; }
-FW_SHARED_FN uint refineCodeSide(uint code) { return (code >> 8u) & 3u; }
-FW_SHARED_FN uint refineCodeStep(uint code) { return code & 255u; }
+FW_CONST uint kRefineOnSide = 0x8000u;
+FW_FN uint refineOnSide(uint e, uint i) { return kRefineOnSide | (e << 8u) | i; }
+FW_FN uint refineInside(uint c1, uint c2) { return (c1 << 6u) | c2; }
+FW_FN uint refineCodeSide(uint code) { return (code >> 8u) & 3u; }
+FW_FN uint refineCodeStep(uint code) { return code & 255u; }
 
-FW_SHARED_FN uint refineStripStart(uint l, uint m) {
+FW_FN uint refineStripStart(uint l, uint m) {
     uint n = 1u << m;
     return 63u * (m - 2u) + 6u * (n - 4u - 3u * (m - 2u)) + (1u << l) - 1u + l * (n - 3u);
 }
-FW_SHARED_FN uint refineInnerStart(uint m) {
+FW_FN uint refineInnerStart(uint m) {
     return kRefineInner + (m < 4u ? m - 2u : m == 4u ? 26u : 195u);
 }
 
@@ -33,12 +33,12 @@ FW_CONSTANT_FN uint refineInnerToken(uint down, uint a, uint b) {
     return a | (b << 5u) | (down << 10u);
 }
 // Token for m < 2: three vertices of three bits; 0..2 corners, 3..5 middles of the sides.
-FW_SHARED_FN uint refineHandCode(uint v) {
+FW_FN uint refineHandCode(uint v) {
     return v < 3u ? refineOnSide(v, 0u) : refineOnSide(v - 3u, 1u);
 }
 
 // j-th point of the lattice row beside side e, in the side's direction.
-FW_SHARED_FN uint refineRowPoint(uint e, uint j, uint n) {
+FW_FN uint refineRowPoint(uint e, uint j, uint n) {
     uint near = n - 1u - j;  // c[e]; c[e + 1] = j, c[e + 2] = 1
     return e == 0u ? refineInside(j, 1u) : e == 1u ? refineInside(near, j) : refineInside(1u, near);
 }
@@ -49,7 +49,7 @@ struct RefinePlace {  // table position of the k-th triangle
     uint k;           // number in that part
 };
 
-FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
+FW_FN RefinePlace refineLocate(uint levels, uint k) {
     RefinePlace place;
     uint m = refineInterior(levels);
     if (m < 2u) {
@@ -86,7 +86,7 @@ FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
 }
 
 // Codes of the triangle, counter-clockwise. token: table[place.entry].
-FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token) {
+FW_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token) {
     if (place.part == 4u)
         return uvec3(refineHandCode(token & 7u), refineHandCode((token >> 3u) & 7u),
                      refineHandCode((token >> 6u) & 7u));
@@ -115,7 +115,7 @@ FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token
 }
 
 // Weights of the three corners in 1/32.
-FW_SHARED_FN uvec3 refineWeights(uint levels, uint code) {
+FW_FN uvec3 refineWeights(uint levels, uint code) {
     if ((code & kRefineOnSide) != 0u) {
         uint e = refineCodeSide(code);
         uint i = refineCodeStep(code) << (kRefineDepth - refineSide(levels, e));
@@ -128,7 +128,7 @@ FW_SHARED_FN uvec3 refineWeights(uint levels, uint code) {
 }
 
 // Sides of the coarse triangle that contain a code, one bit each.
-FW_SHARED_FN uint refineSidesOf(uint levels, uint code) {
+FW_FN uint refineSidesOf(uint levels, uint code) {
     if ((code & kRefineOnSide) == 0u) return 0u;
     uint e = refineCodeSide(code), i = refineCodeStep(code);
     uint bits = 1u << e;
@@ -140,29 +140,29 @@ FW_SHARED_FN uint refineSidesOf(uint levels, uint code) {
 // ---- identity: a vertex keeps its number on all levels
 
 // Inner point i (1 .. 2^l - 1, from the low end) of an edge, counted from the edge's first.
-FW_SHARED_FN uint refineEdgePoint(uint i, uint l, uint depth) { return (i << (depth - l)) - 1u; }
+FW_FN uint refineEdgePoint(uint i, uint l, uint depth) { return (i << (depth - l)) - 1u; }
 // Lattice point of n = 2^depth steps, counted from the interior's first.
-FW_SHARED_FN uint refineInnerPoint(uint c1, uint c2, uint n) {
+FW_FN uint refineInnerPoint(uint c1, uint c2, uint n) {
     uint r = c2 - 1u;
     return r * (n - 2u) - ((r * (r - 1u)) >> 1u) + c1 - 1u;
 }
-FW_SHARED_FN uint refineInnerCount(uint m) {
+FW_FN uint refineInnerCount(uint m) {
     uint n = 1u << m;
     return m < 2u ? 0u : ((n - 1u) * (n - 2u)) >> 1u;
 }
 // i in 0..2^l from the low end.
-FW_SHARED_FN uint refineEdgeSlot(FW_IN(RefineEdge) edge, uint i, uint l) {
+FW_FN uint refineEdgeSlot(FW_IN(RefineEdge) edge, uint i, uint l) {
     if (i == 0u) return edge.low;
     if (i == (1u << l)) return edge.high;
     return edge.slot + refineEdgePoint(i, l, edge.flags & 15u);
 }
 // m: the interior's level.
-FW_SHARED_FN uint refineInnerSlot(FW_IN(RefineTriangle) t, uint c1, uint c2, uint m) {
+FW_FN uint refineInnerSlot(FW_IN(RefineTriangle) t, uint c1, uint c2, uint m) {
     uint depth = refineInteriorDepth(t.flags);
     uint shift = depth - m;
     return t.slot + refineInnerPoint(c1 << shift, c2 << shift, 1u << depth);
 }
-FW_SHARED_FN uint refineDrawVertex(FW_IN(RefineTriangle) t, uint levels, uint code) {
+FW_FN uint refineDrawVertex(FW_IN(RefineTriangle) t, uint levels, uint code) {
     if ((code & kRefineOnSide) == 0u)
         return refineInnerSlot(t, code >> 6u, code & 63u, refineInterior(levels));
     uint e = refineCodeSide(code), i = refineCodeStep(code);

@@ -7,13 +7,13 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kMaxRooms = 64u;
+FW_CONST uint kMaxRooms = 64u;
 // Oxygen by volume, 2^-32 of the air.
-FW_SHARED_CONST uint kAirOutside = 899795648u;  // 20.95 %
-FW_SHARED_CONST uint minKAir = 515396076u;    // 12 %: nothing burns below
-FW_SHARED_CONST uint kAirStep = 503316u;  // burning strength grows by 1/256 per step; 3 % to full
+FW_CONST uint kAirOutside = 899795648u;  // 20.95 %
+FW_CONST uint minKAir = 515396076u;    // 12 %: nothing burns below
+FW_CONST uint kAirStep = 503316u;  // burning strength grows by 1/256 per step; 3 % to full
 // Of room steps, which precede heat steps.
-FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;
+FW_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;
 
 struct Room {     // as the host defines it
     uint takes;   // oxygen consumed per J of fire, Q20
@@ -25,7 +25,7 @@ struct Room {     // as the host defines it
     uint flash;
     uint reserved;
 };
-FW_SHARED_SIZE(Room, 32)
+FW_SIZE(Room, 32)
 
 struct RoomAir {  // state
     uint oxygen;
@@ -37,13 +37,12 @@ struct RoomAir {  // state
     uint flashTick; // of the last flashover
     uint reserved;
 };
-FW_SHARED_SIZE(RoomAir, 32)
-FW_SHARED_CONST uint kRoomMeans = 8u;
-FW_SHARED_CONST uint kMaxFlash = (1u << 28u) - 1u;  // J per period: limit of the mean's bits
+FW_SIZE(RoomAir, 32)
+FW_CONST uint kRoomMeans = 8u;
+FW_CONST uint kMaxFlash = (1u << 28u) - 1u;  // J per period: limit of the mean's bits
 
 // Whole J that an object's fire released since `drawn`; the remainder waits there. Both in 2^-20 J.
-FW_SHARED_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow,
-                                  FW_INOUT(uint) drawnHigh) {
+FW_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow, FW_INOUT(uint) drawnHigh) {
     uint restLow = low - drawnLow;
     uint restHigh = high - drawnHigh - (low < drawnLow ? 1u : 0u);
     uint joules = (restHigh << 12u) | (restLow >> 20u);
@@ -55,7 +54,7 @@ FW_SHARED_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow,
 
 // Updates the mean and the flashover state. A flashover is reported again only after the mean fell
 // to half.
-FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+FW_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
     air.power += (joules < kMaxFlash ? joules : kMaxFlash);
     air.power -= divide(air.power + kRoomMeans - 1u, kRoomMeans);
     bool over = (air.flash & 1u) != 0u;
@@ -67,7 +66,7 @@ FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint 
 }
 
 // One period of a room, up to `now`, in which fires gave off so many J.
-FW_SHARED_FN void stepRoomAir(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+FW_FN void stepRoomAir(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
     if (air.epoch != room.epoch) {  // it starts
         air.oxygen = room.starts;
         air.power = room.power;
@@ -90,7 +89,7 @@ FW_SHARED_FN void stepRoomAir(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joul
 }
 
 // Burning strength, Q8.
-FW_SHARED_FN uint burnStrengthOfOxygen(uint oxygen) {
+FW_FN uint burnStrengthOfOxygen(uint oxygen) {
     if (oxygen <= minKAir) return 0u;
     uint strength = divide(oxygen - minKAir, kAirStep);
     return strength < kAirFull ? strength : kAirFull;

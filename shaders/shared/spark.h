@@ -9,25 +9,25 @@
 FW_SHARED_BEGIN
 
 // A slot emits one spark after another, each within a cycle of this length.
-FW_SHARED_CONST float kSparkTurn = 2.5f;     // s
-FW_SHARED_CONST uint kSparkKeys = 12u;       // of a source's path: one cycle, and the running step
-FW_SHARED_CONST float kSparkKeyStep = 0.25f; // s
-FW_SHARED_CONST uint kMaxSparks = 2048u;    // slots of a source
-FW_SHARED_CONST uint kTileSparks = 8u;       // slots of a burning tile
-FW_SHARED_CONST uint kMaxTileSparks = 1024u; // quads of all burning tiles of a source
-FW_SHARED_CONST uint kSparkGroups = 4u;      // of 64 threads, per source
-FW_SHARED_CONST uint kSparkLegs = 3u;        // a flight and two bounces
-FW_SHARED_CONST uint kSparkLooks = 8u;       // collision samples per leg
-FW_SHARED_CONST uint kSparkHalvings = 8u;    // bisections of a hit
-FW_SHARED_CONST float kSparkShutter = 0.02f; // s of motion shown as a streak
-FW_SHARED_CONST float kSparkClear = 0.005f;  // m: least distance to surfaces
+FW_CONST float kSparkTurn = 2.5f;     // s
+FW_CONST uint kSparkKeys = 12u;       // of a source's path: one cycle, and the running step
+FW_CONST float kSparkKeyStep = 0.25f; // s
+FW_CONST uint kMaxSparks = 2048u;    // slots of a source
+FW_CONST uint kTileSparks = 8u;       // slots of a burning tile
+FW_CONST uint kMaxTileSparks = 1024u; // quads of all burning tiles of a source
+FW_CONST uint kSparkGroups = 4u;      // of 64 threads, per source
+FW_CONST uint kSparkLegs = 3u;        // a flight and two bounces
+FW_CONST uint kSparkLooks = 8u;       // collision samples per leg
+FW_CONST uint kSparkHalvings = 8u;    // bisections of a hit
+FW_CONST float kSparkShutter = 0.02f; // s of motion shown as a streak
+FW_CONST float kSparkClear = 0.005f;  // m: least distance to surfaces
 // M that a spark may be inside a wall between two samples.
-FW_SHARED_CONST float kSparkBehind = 6.0f;
-FW_SHARED_CONST float kSparkPlume = 1.7f;    // in drag times: how long the plume lifts a spark
+FW_CONST float kSparkBehind = 6.0f;
+FW_CONST float kSparkPlume = 1.7f;    // in drag times: how long the plume lifts a spark
 
 // SparkSource::flags
-FW_SHARED_CONST uint kSparkGround = 1u;
-FW_SHARED_CONST uint kSparkWall = 2u;
+FW_CONST uint kSparkGround = 1u;
+FW_CONST uint kSparkWall = 2u;
 
 struct SparkSource {  // one frame of an emitter
     vec4 keys[12];    // m, world: past positions, now first, then at the clock's steps; w: sparks a
@@ -53,11 +53,11 @@ struct SparkSource {  // one frame of an emitter
     vec4 cells[64];   // m: heights of the host's field at the corners of each cell, rows along x:
                      // two at its z, two at the next
 };
-FW_SHARED_SIZE(SparkSource, 1376)
-FW_SHARED_CONST uint kSparkSourceQuads = 86u;  // size of SparkSource in quads
-FW_SHARED_CONST uint kSparkCellQuad = 22u;     // quad where its cells begin
-FW_SHARED_CONST uint kSparkCells = 8u;         // of a row
-FW_SHARED_CONST float kSparkCellSide = 1.0f;   // m
+FW_SIZE(SparkSource, 1376)
+FW_CONST uint kSparkSourceQuads = 86u;  // size of SparkSource in quads
+FW_CONST uint kSparkCellQuad = 22u;     // quad where its cells begin
+FW_CONST uint kSparkCells = 8u;         // of a row
+FW_CONST float kSparkCellSide = 1.0f;   // m
 
 struct SparkPush {
     uint quads;      // visible, at most; all emissive (kFlameEmissiveQuads)
@@ -65,13 +65,13 @@ struct SparkPush {
     uint burnRow;    // as ParticlePush
     uint reserved;
 };
-FW_SHARED_SIZE(SparkPush, 16)
+FW_SIZE(SparkPush, 16)
 
 struct SparkSlot {  // current spark of a slot
     uint seed;
     float age;      // s
 };
-FW_SHARED_FN SparkSlot sparkSlot(uint seed, uint slot, uint turn, float part) {
+FW_FN SparkSlot sparkSlot(uint seed, uint slot, uint turn, float part) {
     uint own = particleSeed(seed, slot);
     float x = part + hashUnit(own);
     SparkSlot s;
@@ -81,11 +81,11 @@ FW_SHARED_FN SparkSlot sparkSlot(uint seed, uint slot, uint turn, float part) {
 }
 // Chance that a slot has a spark now, > 0: it has. The first slots always have one, up to the
 // rate's integral part; the next has the remaining probability: the mean is exactly the rate.
-FW_SHARED_FN float sparkChance(float rate, uint slot, uint seed) {
+FW_FN float sparkChance(float rate, uint slot, uint seed) {
     return rate * kSparkTurn - float(slot) - hashUnit(seed + 1u);
 }
 // Position in the keys `age` s ago: integral part and fraction.
-FW_SHARED_FN float sparkKey(float keyAge, float age) {
+FW_FN float sparkKey(float keyAge, float age) {
     return min(age < keyAge ? age / max(keyAge, 1e-4f) : 1.0f + (age - keyAge) / kSparkKeyStep,
                float(kSparkKeys) - 1.001f);
 }
@@ -97,7 +97,7 @@ struct SparkKind {  // follows from the seed alone
     float fall;     // m/s^2 down; < 0: rises
     float ember;    // 1: a glowing flake, slow and long-lived
 };
-FW_SHARED_FN SparkKind sparkKind(uint seed) {
+FW_FN SparkKind sparkKind(uint seed) {
     SparkKind s;
     float own = hashUnit(seed + 2u), other = hashUnit(seed + 3u);
     s.ember = hashUnit(seed + 4u) < 0.25f ? 1.0f : 0.0f;
@@ -117,14 +117,14 @@ struct SparkLeg {  // flight from one collision to the next
     float ends;
 };
 // Position `t` s into the leg. Drag is linear and the plume decays: both are exponentials.
-FW_SHARED_FN vec3 sparkArc(SparkLeg leg, vec3 up, float tau, float t) {
+FW_FN vec3 sparkArc(SparkLeg leg, vec3 up, float tau, float t) {
     float slow = tau * kSparkPlume;
     vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
     return leg.from + leg.settled * t +
            (leg.speed - leg.settled - carried) * (tau * (1.0f - exp(-t / tau))) +
            carried * (slow * (1.0f - exp(-t / slow)));
 }
-FW_SHARED_FN vec3 sparkArcSpeed(SparkLeg leg, vec3 up, float tau, float t) {
+FW_FN vec3 sparkArcSpeed(SparkLeg leg, vec3 up, float tau, float t) {
     vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
     return leg.settled + (leg.speed - leg.settled - carried) * exp(-t / tau) +
            carried * exp(-t / (tau * kSparkPlume));
@@ -143,12 +143,12 @@ struct SparkBounds {
 #endif
 };
 #ifdef __cplusplus
-FW_SHARED_FN vec4 sparkCell(SparkBounds b, uint i) { return b.cells ? b.cells[i] : vec4(0.0f); }
+FW_FN vec4 sparkCell(SparkBounds b, uint i) { return b.cells ? b.cells[i] : vec4(0.0f); }
 #else
 vec4 sparkCell(SparkBounds b, uint i);  // defined by the includer
 #endif
 // Nearest ground, plane or height field: unit normal; w: m above it.
-FW_SHARED_FN vec4 sparkGround(SparkBounds b, vec3 p) {
+FW_FN vec4 sparkGround(SparkBounds b, vec3 p) {
     float above = dot(p, vec3(b.ground)) - b.ground.w;
     float side = max(b.grid.z, 1e-3f), most = float(kSparkCells) - 1e-3f;
     float x = clamp((p.x - b.grid.x) / side, 0.0f, most),
@@ -162,20 +162,20 @@ FW_SHARED_FN vec4 sparkGround(SparkBounds b, vec3 p) {
     return b.grid.w > 0.5f && over < above ? vec4(n, over)
                                            : vec4(b.ground.x, b.ground.y, b.ground.z, above);
 }
-FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
+FW_FN float sparkBefore(SparkBounds b, vec3 p) {
     vec3 d = p - vec3(b.wall);
     float before = dot(d, b.normal);
     vec3 aside = d - b.normal * before;
     // Far behind the disc: it took another path.
     return dot(aside, aside) < b.wall.w * b.wall.w && before > -kSparkBehind ? before : 1e9f;
 }
-FW_SHARED_FN float sparkClearance(SparkBounds b, vec3 p) {
+FW_FN float sparkClearance(SparkBounds b, vec3 p) {
     return min(sparkGround(b, p).w, sparkBefore(b, p));
 }
 
 // s into the leg until a collision; `most`: none. Sampled at the same places for any moment shown,
 // so a bounce stays in place; densely at first, while it is fast.
-FW_SHARED_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, float most) {
+FW_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, float most) {
     float low = most, high = most;
     bool met = false;
     for (uint i = 0u; i < kSparkLooks; ++i) {
@@ -197,7 +197,7 @@ FW_SHARED_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, f
 }
 
 // Leg of the flight at `age`. After its last collision a spark lies still.
-FW_SHARED_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec3 up, float age) {
+FW_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec3 up, float age) {
     SparkLeg leg = born;
     leg.ends = kind.life;
     for (uint i = 0u; i < kSparkLegs; ++i) {
@@ -224,8 +224,7 @@ FW_SHARED_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec
 }
 
 // Position at `age`, m, within its leg. Eddies shake it without pushing it into surfaces.
-FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 up, uint seed,
-                             float age) {
+FW_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 up, uint seed, float age) {
     float t = clamp(age, leg.began, leg.ends) - leg.began;
     vec3 p = sparkArc(leg, up, kind.tau, t);
     float clear = sparkClearance(b, p), turns = 6.0f + 8.0f * hashUnit(seed + 5u);
@@ -240,8 +239,8 @@ FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 u
 }
 
 // Leg at birth, at `at`, from a source that moves at `carried`.
-FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3 direction,
-                                vec3 carried) {
+FW_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3 direction,
+                         vec3 carried) {
     vec3 up = vec3(s.up), wind = vec3(s.wind);
     vec3 r = particleAcross(direction), u = cross(r, direction);
     float a = particleGauss(seed + 8u) * s.direction.w,
@@ -260,18 +259,18 @@ FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 a
     return leg;
 }
 // Offset on the source from its middle, m.
-FW_SHARED_FN vec3 sparkOff(vec3 direction, float radius, vec3 half_, uint seed) {
+FW_FN vec3 sparkOff(vec3 direction, float radius, vec3 half_, uint seed) {
     vec3 r = particleAcross(direction), u = cross(r, direction);
     float disc = radius * sqrt(hashUnit(seed + 15u)), turn = 6.2831853f * hashUnit(seed + 16u);
     return (r * cos(turn) + u * sin(turn)) * disc + half_ * (2.0f * hashUnit(seed + 17u) - 1.0f);
 }
 
 // K, and opacity, at `a` of its life.
-FW_SHARED_FN float sparkKelvin(float kelvin, SparkKind kind, uint seed, float a) {
+FW_FN float sparkKelvin(float kelvin, SparkKind kind, uint seed, float a) {
     float gust = sin(19.0f * a * kind.life + 6.2831853f * hashUnit(seed + 18u));
     return mix(kelvin - 650.0f * a, kelvin - 330.0f - 480.0f * a + 60.0f * gust, kind.ember);
 }
-FW_SHARED_FN float sparkFades(float a) { return 1.0f - smoothstep(0.6f, 1.0f, a); }
+FW_FN float sparkFades(float a) { return 1.0f - smoothstep(0.6f, 1.0f, a); }
 
 FW_SHARED_END
 #endif

@@ -43,19 +43,19 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 }  // namespace fw::gpu
 #define FW_SHARED_BEGIN namespace fw::gpu {
 #define FW_SHARED_END }
-#define FW_SHARED_FN inline
-#define FW_SHARED_CONST constexpr
+#define FW_FN inline
+#define FW_CONST constexpr
 #define FW_IN(T) const T&
 #define FW_OUT(T) T&
 #define FW_INOUT(T) T&
 #define FW_PRECISE
 #define FW_UNROLL
-#define FW_SHARED_SIZE(T, bytes) static_assert(sizeof(T) == (bytes));
+#define FW_SIZE(T, bytes) static_assert(sizeof(T) == (bytes));
 #else
 #define FW_SHARED_BEGIN
 #define FW_SHARED_END
-#define FW_SHARED_FN
-#define FW_SHARED_CONST const
+#define FW_FN
+#define FW_CONST const
 #define FW_IN(T) T
 #define FW_OUT(T) out T
 #define FW_INOUT(T) inout T
@@ -63,6 +63,6 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 // For loops over small arrays: these become registers only if every index is constant.
 #extension GL_EXT_control_flow_attributes : require
 #define FW_UNROLL [[unroll]]
-#define FW_SHARED_SIZE(T, bytes)
+#define FW_SIZE(T, bytes)
 #endif
 #endif

@@ -16,17 +16,17 @@ using glm::unpackUnorm4x8;
 inline float intBitsToFloat(int x) { return std::bit_cast<float>(x); }
 #endif
 
-FW_SHARED_CONST uint kFlameNodes = 24u;          // per curve
-FW_SHARED_CONST uint kFlameOctaves = 4u;         // per flame, at most
-FW_SHARED_CONST uint kProfileWidth = 64u;        // texels over rho in [0, kProfileReach]
-FW_SHARED_CONST uint kProfileHeight = 128u;      // texels over y in [0, 1]
-FW_SHARED_CONST float kProfileReach = 1.25f;     // rho at the profile's right edge
-FW_SHARED_CONST float kFlameReach = 1.2f;  // |p| over the tube's radius beyond which nothing burns
-FW_SHARED_CONST float kFlameTop = 2.6f;          // y beyond which nothing burns
-FW_SHARED_CONST float kFlameWrap = 4096.0f;  // noise cells after which noise repeats along a flame
+FW_CONST uint kFlameNodes = 24u;          // per curve
+FW_CONST uint kFlameOctaves = 4u;         // per flame, at most
+FW_CONST uint kProfileWidth = 64u;        // texels over rho in [0, kProfileReach]
+FW_CONST uint kProfileHeight = 128u;      // texels over y in [0, 1]
+FW_CONST float kProfileReach = 1.25f;     // rho at the profile's right edge
+FW_CONST float kFlameReach = 1.2f;  // |p| over the tube's radius beyond which nothing burns
+FW_CONST float kFlameTop = 2.6f;          // y beyond which nothing burns
+FW_CONST float kFlameWrap = 4096.0f;  // noise cells after which noise repeats along a flame
 // E|flameNoise|, which removes the bias of ridged noise.
-FW_SHARED_CONST float kFlameMeanAbs = 0.177f;
-FW_SHARED_CONST float kFlamePuffLag = 1.6f;      // a bulge travels slower than the gas
+FW_CONST float kFlameMeanAbs = 0.177f;
+FW_CONST float kFlamePuffLag = 1.6f;      // a bulge travels slower than the gas
 
 struct FlameNode {        // point of a curve, evenly spaced
     vec4 centre;          // xyz m, world; w: m, radius of the tube
@@ -35,7 +35,7 @@ struct FlameNode {        // point of a curve, evenly spaced
     vec4 side;
     vec4 squeeze;         // xyz: unit, flattening direction of a wall; w: [0, 0.9] strength
 };
-FW_SHARED_SIZE(FlameNode, 64)
+FW_SIZE(FlameNode, 64)
 
 struct FlameRecord {      // one flame in one frame
     vec4 low;             // xyz m, world: bounds of all its visible parts; w: m, diameter
@@ -88,7 +88,7 @@ struct FlameRecord {      // one flame in one frame
     uint profile;         // layer
     uint octaves;         // [1, 4]
 };
-FW_SHARED_SIZE(FlameRecord, 256)
+FW_SIZE(FlameRecord, 256)
 
 struct FlamePlace {       // a point in a curve's coordinates
     vec2 p;               // m off the axis, along side and cross(along, side)
@@ -115,7 +115,7 @@ struct FlameRay {
 };
 
 // 2^x within 1e-4, x clamped to [-60, 60]: four times faster than devices' own.
-FW_SHARED_FN float flameExp2(float x) {
+FW_FN float flameExp2(float x) {
     float whole = floor(clamp(x, -60.0f, 60.0f));
     float f = clamp(x, -60.0f, 60.0f) - whole;
     float part = 1.0f + f * (0.6955568f + f * (0.2261735f + f * 0.0782697f));
@@ -125,13 +125,13 @@ FW_SHARED_FN float flameExp2(float x) {
 // ---- noise: gradient noise, mean 0, rms 0.220, |n| < 1; repeats along y after kFlameWrap cells
 
 // One multiplication per corner: noise dominates the cost of a flame.
-FW_SHARED_FN uint flameCorner(uint h) {
+FW_FN uint flameCorner(uint h) {
     h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
     return h ^ (h >> 13);
 }
 
 // Contribution of a corner at distance f. Its gradient is uniform in a cube of half side 2^31.
-FW_SHARED_FN float flameCornerDot(uint key, vec3 f) {
+FW_FN float flameCornerDot(uint key, vec3 f) {
     uint h = flameCorner(key);
     return float(int(h)) * f.x + float(int(h << 11)) * f.y + float(int(h << 21)) * f.z;
 }
@@ -141,7 +141,7 @@ struct FlameLattice {
     vec3 f; vec3 g; vec3 u;
     uint i; uint i1; uint j; uint j1; uint k; uint k1;
 };
-FW_SHARED_FN FlameLattice flameLattice(vec3 x) {
+FW_FN FlameLattice flameLattice(vec3 x) {
     FlameLattice l;
     vec3 cell = floor(x);
     l.f = x - cell;
@@ -153,7 +153,7 @@ FW_SHARED_FN FlameLattice flameLattice(vec3 x) {
     l.k = uint(int(cell.z)) * 0xC2B2AE3Du; l.k1 = l.k + 0xC2B2AE3Du;
     return l;
 }
-FW_SHARED_FN float flameNoise(vec3 x) {
+FW_FN float flameNoise(vec3 x) {
     FlameLattice l = flameLattice(x);
     vec3 f = l.f, g = l.g, u = l.u;
     uint k = l.k, k1 = l.k1;
@@ -171,14 +171,14 @@ FW_SHARED_FN float flameNoise(vec3 x) {
     return (1.15f / 2147483648.0f) * (a + u.z * (e - a));
 }
 
-FW_SHARED_FN vec3 flameCornerSlope(uint h) {
+FW_FN vec3 flameCornerSlope(uint h) {
     return vec3(float(int(h)), float(int(h << 11)), float(int(h << 21)));
 }
 
 // Slopes of two noises on one lattice, scaled by 2^31 / 1.15: contribution of a corner. w: its
 // weight, dw: slope of the weight.
-FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first,
-                                  FW_INOUT(vec3) second) {
+FW_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first,
+                           FW_INOUT(vec3) second) {
     uint h = flameCorner(key);
     vec3 g = flameCornerSlope(h);
     first += w * g + dot(g, f) * dw;
@@ -187,7 +187,7 @@ FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(v
 }
 
 // Slopes of two noises at once, per cell.
-FW_SHARED_FN void flameSlopes(vec3 x, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
+FW_FN void flameSlopes(vec3 x, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
     FlameLattice l = flameLattice(x);
     vec3 f = l.f, g = l.g, u = l.u;
     vec3 v = vec3(1.0f) - u;
@@ -212,7 +212,7 @@ FW_SHARED_FN void flameSlopes(vec3 x, FW_INOUT(vec3) first, FW_INOUT(vec3) secon
 }
 
 // Divergence-free eddies, limited so that none carries fire far from the flame.
-FW_SHARED_FN vec3 flameCurl(vec3 x) {
+FW_FN vec3 flameCurl(vec3 x) {
     vec3 a; vec3 b;
     flameSlopes(x, a, b);
     vec3 w = cross(a, b);
@@ -223,7 +223,7 @@ FW_SHARED_FN vec3 flameCurl(vec3 x) {
 
 // Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A function of
 // tau - t moves with the gas and stretches with it.
-FW_SHARED_FN float flameTau(float s, float tauStart, float tauFree) {
+FW_FN float flameTau(float s, float tauStart, float tauFree) {
     float a = clamp(s, 0.0f, tauFree);
     return (2.0f / 6.84f) * (sqrt(a + tauStart) - sqrt(tauStart)) +
            max(s - tauFree, 0.0f) / (6.84f * sqrt(tauFree + tauStart));
@@ -231,13 +231,13 @@ FW_SHARED_FN float flameTau(float s, float tauStart, float tauFree) {
 
 // ---- curve
 
-FW_SHARED_FN float flamePlane(vec3 x, FlameNode node) {
+FW_FN float flamePlane(vec3 x, FlameNode node) {
     return dot(x - vec3(node.centre), vec3(node.along));
 }
 
 // Coordinates of a point between the bisector planes of two nodes: da >= 0 in front of the first,
 // db < 0 before the second. Continuous across segments.
-FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float db) {
+FW_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float db) {
     float w = da / max(da - db, 1e-9f);
     vec4 centre = mix(a.centre, b.centre, w);
     vec3 off = x - vec3(centre);
@@ -256,7 +256,7 @@ FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da,
 // ---- appearance
 
 // size: m, footprint of the sample (the larger of step and pixel); finer detail fades.
-FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
+FW_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     FlameLookup look;
     look.lit = 0.0f; look.rho = 2.0f; look.y = 2.0f;
     look.erode = 0.0f; look.sheet = 1.0f; look.guard = 0.0f;
@@ -322,7 +322,7 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     return look;
 }
 
-FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
+FW_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
     vec3 radiance =
         sootColour(kelvin, flameExp2(34981.0f * (1.0f / 1600.0f) - 34981.0f / max(kelvin, 400.0f)));
     if (f.tint.w > 0.0f) {  // coloured fire keeps the luminance
@@ -336,7 +336,7 @@ FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
 }
 
 // profile: sample of the fire profile at look.rho, look.y: x in 1000 K, 0 without hot gas; y soot.
-FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profile) {
+FW_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profile) {
     FlameMedium m;
     float soot = max(0.0f, profile.y - look.erode) / (1.0f - look.erode) * look.sheet * look.guard;
     m.soot = f.soot * f.air.w * soot;
@@ -351,13 +351,13 @@ FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profi
 }
 
 // Half width of the plume above a flame, m.
-FW_SHARED_FN float flamePlumeWide(FlameRecord f, float s) {
+FW_FN float flamePlumeWide(FlameRecord f, float s) {
     return 0.45f * f.low.w + 0.16f * max(s - 0.6f * f.high.w, 0.0f);
 }
 
 // Smoke above a flame: billows in a widening plume. x: 1/m; y: [0, 1], how bright it appears in
 // light.
-FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
+FW_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return vec2(0.0f, 0.5f);
     float diameter = f.low.w;
@@ -388,7 +388,7 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
 
 // Largest distance from the axis, m, of anything visible between two places along, in a tube of
 // `radius`, widened by `widened`.
-FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius, float widened) {
+FW_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius, float widened) {
     float reach = kFlameReach * (1.0f + f.puff) * radius;
     if (f.smoke <= 0.0f || s1 < 0.6f * f.high.w || s0 > f.smokeTop * f.high.w) return reach;
     return max(reach, widened * 1.96f * flamePlumeWide(f, s1));
@@ -401,8 +401,8 @@ struct FlameSun {         // sunlight for a ray's smoke
 };
 
 // Smoke scatters forwards: Henyey-Greenstein phase function relative to isotropic scattering.
-FW_SHARED_CONST float kSmokeForward = 0.4f;
-FW_SHARED_FN FlameSun flameSun(FlameNode end, vec3 toSun, vec3 direction, vec3 light) {
+FW_CONST float kSmokeForward = 0.4f;
+FW_FN FlameSun flameSun(FlameNode end, vec3 toSun, vec3 direction, vec3 light) {
     float g = kSmokeForward, q = 1.0f + g * g - 2.0f * g * dot(direction, toSun);
     vec3 side = vec3(end.side), along = vec3(end.along);
     FlameSun sun;
@@ -412,7 +412,7 @@ FW_SHARED_FN FlameSun flameSun(FlameNode end, vec3 toSun, vec3 direction, vec3 l
 }
 
 // erfc(x), x >= 0, within 2.5e-5: Abramowitz and Stegun, 7.1.25.
-FW_SHARED_FN float flameErfc(float x) {
+FW_FN float flameErfc(float x) {
     float t = 1.0f / (1.0f + 0.47047f * x);
     return t * (0.3480242f - t * (0.0958798f - t * 0.7478556f)) * exp(-x * x);
 }
@@ -420,8 +420,8 @@ FW_SHARED_FN float flameErfc(float x) {
 // Optical depth of smoke towards the sun. The plume's body casts the shadow, not its billows: a
 // bell across the axis, whose integral is known in closed form. Width and density are those of the
 // position.
-FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own, reduced by billows
-FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
+FW_CONST float kSmokeBell = 2.4f;  // of its density: the body's own, reduced by billows
+FW_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return 0.0f;
     float wide = flamePlumeWide(f, at.s);
@@ -441,9 +441,8 @@ FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
 // Light scattered by smoke towards the camera per unit of density: from the flame below, ambient
 // and sun. Multiple scattering reaches deeper than direct sun. Fresh smoke is finer than the
 // wavelength and scatters blue more: the flame's deep orange turns brown.
-FW_SHARED_CONST vec3 kSmokeAside = vec3(1.0f, 1.4f, 1.9f);
-FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun,
-                                  float depth) {
+FW_CONST vec3 kSmokeAside = vec3(1.0f, 1.4f, 1.9f);
+FW_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun, float depth) {
     vec3 fire = kSmokeAside * flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) *
                 (f.glow.w / (distance2 + 0.3f * f.low.w * f.low.w));
     vec3 day = sun * (0.8f * exp(-depth) + 0.2f * exp(-0.2f * depth));
@@ -451,11 +450,11 @@ FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, v
            (fire * mix(1.25f, 0.5f, shade) + (vec3(f.air) + day) * mix(0.7f, 1.1f, shade));
 }
 
-FW_SHARED_CONST vec3 kFlameAbsorb = vec3(0.9f, 1.125f, 1.35f);  // soot absorbs more blue
+FW_CONST vec3 kFlameAbsorb = vec3(0.9f, 1.125f, 1.35f);  // soot absorbs more blue
 
 // One step of emission and absorption, exact for a constant medium: thick flame reddens. incoming:
 // light that smoke scatters towards the camera.
-FW_SHARED_FN FlameRay flameStep(FlameRay ray, FlameMedium m, vec3 incoming, float d) {
+FW_FN FlameRay flameStep(FlameRay ray, FlameMedium m, vec3 incoming, float d) {
     // One exponential; the three channels are its powers.
     float e = flameExp2(-1.442695f * 0.225f * m.soot * d);
     float e2 = e * e;

@@ -7,14 +7,14 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kMaxVolumeFlames = 256u;   // of a world, in a frame
-FW_SHARED_CONST uint kFirePresets = 9u;         // first layers of the profile texture
-FW_SHARED_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
-FW_SHARED_CONST uint kProfileBytes = 32768u;    // per layer: 64 x 128 pairs of half floats
-FW_SHARED_CONST uint kVolumeSlabs = 6u;  // slabs of a flame where the host's depth is only tested
-FW_SHARED_CONST float kVolumeWhite = 1.5f;      // host units of soot of luminance 1
+FW_CONST uint kMaxVolumeFlames = 256u;   // of a world, in a frame
+FW_CONST uint kFirePresets = 9u;         // first layers of the profile texture
+FW_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
+FW_CONST uint kProfileBytes = 32768u;    // per layer: 64 x 128 pairs of half floats
+FW_CONST uint kVolumeSlabs = 6u;  // slabs of a flame where the host's depth is only tested
+FW_CONST float kVolumeWhite = 1.5f;      // host units of soot of luminance 1
 
-FW_SHARED_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
+FW_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
 
 // Push constants: screen rectangle of a flame, and its depth slabs. Ray at x, y of the view:
 // perspective: depth * (rayO + x rayX + y rayY); orthographic: rayO + x rayX + y rayY + depth *
@@ -35,15 +35,15 @@ struct VolumeDraw {
     uint perPixel;        // rays per side of a pixel; [1, 8]
     vec4 base;            // plane through its base, see volumeBaseDepth
 };
-FW_SHARED_SIZE(VolumeDraw, 128)
+FW_SIZE(VolumeDraw, 128)
 
 // ---- depth test without reading depth
 
 // clip z / w of a distance along the view, and its inverse, m. clip: VolumeDraw::clip.
-FW_SHARED_FN float depthOfMetres(vec4 clip, float metres) {
+FW_FN float depthOfMetres(vec4 clip, float metres) {
     return (clip.x * metres + clip.y) / (clip.z * metres + clip.w);
 }
-FW_SHARED_FN float metresOfDepth(vec4 clip, float depth) {
+FW_FN float metresOfDepth(vec4 clip, float depth) {
     float per = clip.x - depth * clip.z;
     float at = (depth * clip.w - clip.y) / (abs(per) > 1e-12f ? per : 1e-12f);
     return at > 0.0f ? at : 1e9f;  // far end of an infinite view
@@ -53,16 +53,14 @@ FW_SHARED_FN float metresOfDepth(vec4 clip, float depth) {
 // w is linear in x, y of the view: base.x + base.y * x + base.z * y. base.w is 1 if the camera is
 // on the flame's side of the plane (all light is nearer than the plane), else -1 (all light is
 // beyond).
-FW_SHARED_FN float volumeBaseDepth(vec4 base, vec2 at) {
-    return base.x + base.y * at.x + base.z * at.y;
-}
+FW_FN float volumeBaseDepth(vec4 base, vec2 at) { return base.x + base.y * at.x + base.z * at.y; }
 
 // A slab from `front` to `front + deep` m is tested at one depth: its middle, or, where the base
 // plane cuts it, the middle of the part on the flame's side. So ground in the plane never hides it,
 // and objects in front do. whole, cut: those depths; the nearest counts, or the farthest if turn is
 // -1.
 struct DepthTest { float whole; float cut; float turn; };
-FW_SHARED_FN DepthTest makeDepthTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+FW_FN DepthTest makeDepthTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
     DepthTest test;
     test.whole = depthOfMetres(clip, front + 0.5f * deep);
     float end = clamp(depthOfMetres(clip, front + (0.5f - 0.5f * base.w) * deep), 0.0f, 1.0f);
@@ -71,11 +69,11 @@ FW_SHARED_FN DepthTest makeDepthTest(vec4 base, vec4 clip, float front, float de
     return test;
 }
 // Depth of a corner. Interpolation between corners is linear, so the ground stays behind.
-FW_SHARED_FN float testedDepth(DepthTest test) {
+FW_FN float testedDepth(DepthTest test) {
     return clamp(test.turn * min(test.turn * test.whole, test.turn * test.cut), 0.0f, 1.0f);
 }
 // Negative where the base plane cuts the slab; linear over the view.
-FW_SHARED_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+FW_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 at) {
     DepthTest test = makeDepthTest(base, clip, front, deep, at);
     return test.turn * (test.cut - test.whole);
 }
@@ -83,8 +81,8 @@ FW_SHARED_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 
 // Splits a quad into two polygons along a line. Returns the place of vertex [0,
 // kVolumeSplitVertices) in the unit square. over: negative on the first polygon's side, at 0 0, 1
 // 0, 1 1 and 0 1.
-FW_SHARED_CONST uint kVolumeSplitVertices = 18u;  // three triangles each, some degenerate
-FW_SHARED_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
+FW_CONST uint kVolumeSplitVertices = 18u;  // three triangles each, some degenerate
+FW_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
     float side = vertex < 9u ? 1.0f : -1.0f;
     uint fan = vertex < 9u ? vertex : vertex - 9u;
     uint turn = fan / 3u;
@@ -108,8 +106,8 @@ FW_SHARED_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
     return at;
 }
 
-FW_SHARED_CONST uint kMarchTileSide = 8u;  // march pixels per side; a workgroup marches a tile
-FW_SHARED_CONST uint kMarchPixelWords = 4u;  // per march pixel and slab: half floats red and green,
+FW_CONST uint kMarchTileSide = 8u;  // march pixels per side; a workgroup marches a tile
+FW_CONST uint kMarchPixelWords = 4u;  // per march pixel and slab: half floats red and green,
                                              // blue and alpha; packSlabRange; unused
 
 // Indirect arguments of a flame's march and draw, one tile each. Zeroed before the probe.
@@ -117,19 +115,19 @@ struct VolumeWork {
     uint groups; uint groupsY; uint groupsZ; uint reserved;
     uint vertices; uint instances; uint firstVertex; uint firstInstance;
 };
-FW_SHARED_SIZE(VolumeWork, 32)
+FW_SIZE(VolumeWork, 32)
 
 // Tile data of a flame, array by array, zeroed before the probe. First a word per tile: one bit per
 // visible slab, then whether its first and last column, first and last row are visible.
-FW_SHARED_CONST uint kMarchTileListed = 1u;        // 1: the tile is marched
-FW_SHARED_CONST uint kMarchTileList = 2u;          // marched tiles
+FW_CONST uint kMarchTileListed = 1u;        // 1: the tile is marched
+FW_CONST uint kMarchTileList = 2u;          // marched tiles
 // March pixels per side of a tile's quarter; per quarter, by marchQuarter:
-FW_SHARED_CONST uint kMarchQuarterSide = 4u;
-FW_SHARED_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
-FW_SHARED_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
-FW_SHARED_CONST uint kMarchTileWords = 12u;    // pixels begin after whole texels of these
+FW_CONST uint kMarchQuarterSide = 4u;
+FW_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
+FW_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
+FW_CONST uint kMarchTileWords = 12u;    // pixels begin after whole texels of these
 // Quarter x, y.
-FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }
+FW_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }
 
 // Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a
 // small flame; its ray passes through its middle (but see marchRayShift). A flame's march pixels
@@ -154,21 +152,21 @@ struct MarchPush {
     uint least;           // least samples per ray, see sampleRefinement; 0: no minimum
     uint reserved0; uint reserved1;
 };
-FW_SHARED_SIZE(MarchPush, 112)
+FW_SIZE(MarchPush, 112)
 
 // n / d, exact below 2^22: software devices divide integers lane by lane.
-FW_SHARED_FN uint quotient22(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
+FW_FN uint quotient22(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
 
 // Sample refinement where only `few` (> 0) samples are worth a march. A thin flame would otherwise
 // appear as a row of beads, as it alternately meets and misses the samples.
-FW_SHARED_CONST uint kVolumeClosest = 4u;
-FW_SHARED_FN uint sampleRefinement(uint few, uint least) {
+FW_CONST uint kVolumeClosest = 4u;
+FW_FN uint sampleRefinement(uint few, uint least) {
     uint closer = quotient22(least + few / 2u, few);
     return closer < 1u ? 1u : closer < kVolumeClosest ? closer : kVolumeClosest;
 }
 
 // Probe workgroups per row; each covers the march pixels of eight rays.
-FW_SHARED_FN uint probeBlockCount(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
+FW_FN uint probeBlockCount(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
 
 // Push constants of the composite pass.
 struct CompositePush {
@@ -186,12 +184,12 @@ struct CompositePush {
     vec4 window;
     vec4 base;            // as VolumeDraw's
 };
-FW_SHARED_SIZE(CompositePush, 112)
+FW_SIZE(CompositePush, 112)
 
 // Billboard impostor: a flame that is marched once and shown for several frames. Tiles of one slab
 // with a constant world size per march pixel. Words: tile data, then march pixels.
-FW_SHARED_CONST uint kMaxImpostorTiles = 128u;         // at most
-FW_SHARED_CONST uint kImpostorWords =
+FW_CONST uint kMaxImpostorTiles = 128u;         // at most
+FW_CONST uint kImpostorWords =
     kMaxImpostorTiles * (kMarchTileWords + kMarchTileSide * kMarchTileSide * kMarchPixelWords);
 
 // Push constants of the impostor pass.
@@ -207,7 +205,7 @@ struct VolumeImpostor {
     uint reserved0;
     vec4 base;            // as VolumeDraw's
 };
-FW_SHARED_SIZE(VolumeImpostor, 96)
+FW_SIZE(VolumeImpostor, 96)
 
 // Push constants of the haze over a flame.
 struct HazePush {
@@ -216,11 +214,11 @@ struct HazePush {
     float strength;       // [0, 8]
     uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(HazePush, 96)
+FW_SIZE(HazePush, 96)
 
 // Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors
 // that share a range interleave; blended over each other, both would be too faint.
-FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
+FW_FN bool passesDither(uint x, uint y, float from, float to) {
     uint a = (x ^ y) & 3u;
     uint b = y & 3u;
     uint order = ((a & 1u) << 3) | ((b & 1u) << 2) | (a & 2u) | ((b & 2u) >> 1);
@@ -231,14 +229,14 @@ FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
 // Phase, [0, 1), of a march pixel's samples within a step: four phases in a square. Vertical
 // neighbours differ by half a step: an upright tongue may be one march pixel wide and would appear
 // dashed otherwise. The phase is constant over frames, so a frame needs no history.
-FW_SHARED_FN float marchSamplePhase(uint x, uint y) {
+FW_FN float marchSamplePhase(uint x, uint y) {
     uint quarter = (x & 1u) | (2u * (y & 1u));
     return 0.085f + 0.25f * float(quarter);
 }
 
 // Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame
 // is then sampled at as many places as it has march pixels.
-FW_SHARED_FN vec2 marchRayShift(uint x, uint y) {
+FW_FN vec2 marchRayShift(uint x, uint y) {
     float across = 0.61803399f * float(y);
     float along = 0.61803399f * float(x);
     return vec2(across - floor(across) - 0.5f, along - floor(along) - 0.5f);
@@ -247,7 +245,7 @@ FW_SHARED_FN vec2 marchRayShift(uint x, uint y) {
 // Weight of the march pixel `step` (-1, 0, 1) from the nearest, `off` [-0.5, 0.5] beyond its
 // middle. Even and odd ones weigh the same for any pixel position, so all four phases count alike
 // and no grain shows.
-FW_SHARED_FN float neighbourWeight(int step, float off) {
+FW_FN float neighbourWeight(int step, float off) {
     return step == 0 ? 0.5f : 0.25f + 0.5f * float(step) * off;
 }
 
@@ -276,12 +274,12 @@ float slabShareBeside(uint lies, float cut, float side) {
 
 // Sample footprint, m, for rays of which perPixel^2 cover a pixel: finer than a ray's share, since
 // the pixel averages many rays; a single ray uses its own width.
-FW_SHARED_FN float sampleFootprint(float pixel, uint perPixel) {
+FW_FN float sampleFootprint(float pixel, uint perPixel) {
     return perPixel > 1u ? 0.25f * pixel / float(perPixel) : pixel;
 }
 
 // Number of samples of a ray over `metres`.
-FW_SHARED_FN float rayStepCount(float metres, float spacing, uint most) {
+FW_FN float rayStepCount(float metres, float spacing, uint most) {
     return clamp(floor(metres / spacing) + 1.0f, 4.0f, float(most));
 }
 FW_SHARED_END

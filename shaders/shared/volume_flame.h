@@ -10,7 +10,7 @@ struct VolumeFlame {
     FlameRecord record;
     FlameNode nodes[kFlameNodes];
 };
-FW_SHARED_SIZE(VolumeFlame, kVolumeFlameBytes)
+FW_SIZE(VolumeFlame, kVolumeFlameBytes)
 
 FW_SHARED_END
 #endif

@@ -7,18 +7,18 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST float kHazeTop = 3.2f;        // y at which the column no longer refracts
-FW_SHARED_CONST float kHazeReach = 1.35f;     // half widths of the plume from the axis to its end
+FW_CONST float kHazeTop = 3.2f;        // y at which the column no longer refracts
+FW_CONST float kHazeReach = 1.35f;     // half widths of the plume from the axis to its end
 // Rad, at the greatest contrast and noise slope: air's 2.9e-4, exaggerated.
-FW_SHARED_CONST float kHazeBend = 0.012f;
-FW_SHARED_CONST uint kHazeColumns = 18u;      // of the grid on whose corners it is evaluated
-FW_SHARED_CONST uint kHazeRows = 28u;
-FW_SHARED_CONST float kHazeAir = 293.0f;      // K
-FW_SHARED_CONST float kHazePixels = 12.0f;    // largest displacement
+FW_CONST float kHazeBend = 0.012f;
+FW_CONST uint kHazeColumns = 18u;      // of the grid on whose corners it is evaluated
+FW_CONST uint kHazeRows = 28u;
+FW_CONST float kHazeAir = 293.0f;      // K
+FW_CONST float kHazePixels = 12.0f;    // largest displacement
 
 // Ta (T - Ta) / T^2 on the plume's axis. McCaffrey's excess: 800 K in the flame, then 1 / z, in the
 // plume z^(-5/3). The visible flame is about 1.7 times as high as its profile.
-FW_SHARED_FN float flameHazeContrast(FlameRecord f, float s) {
+FW_FN float flameHazeContrast(FlameRecord f, float s) {
     float z = max(s, 0.0f) / (1.7f * f.high.w);
     float excess =
         800.0f * min(1.0f, 0.4f / max(z, 0.4f) * min(1.0f, pow(max(z, 1.0f), -0.6666667f)));
@@ -28,7 +28,7 @@ FW_SHARED_FN float flameHazeContrast(FlameRecord f, float s) {
 
 // Deflection of light that passes the axis there, rad: along side, along, across it. Eddies rise
 // with the gas.
-FW_SHARED_FN vec3 flameHaze(FlameRecord f, FlamePlace at) {
+FW_FN vec3 flameHaze(FlameRecord f, FlamePlace at) {
     float y = at.s / f.high.w;
     float wide = flamePlumeWide(f, at.s);
     float off2 = dot(at.p, at.p) / (wide * wide);

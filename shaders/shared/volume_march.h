@@ -18,10 +18,10 @@ FW_SHARED_BEGIN
 #define FW_FLAME_IT
 #endif
 
-FW_SHARED_CONST uint kFlameSkip = 2u;         // a march uses every second node
-FW_SHARED_CONST uint kFlameIntervals = 6u;    // between knots of a ray, at most
-FW_SHARED_CONST uint kFlamePieces = 12u;      // curve pieces of a march
-FW_SHARED_CONST uint kFlameSmokeSteps = 4u;   // per ray
+FW_CONST uint kFlameSkip = 2u;         // a march uses every second node
+FW_CONST uint kFlameIntervals = 6u;    // between knots of a ray, at most
+FW_CONST uint kFlamePieces = 12u;      // curve pieces of a march
+FW_CONST uint kFlameSmokeSteps = 4u;   // per ray
 
 struct FlameChord {       // range of a ray in a tube
     float from; float gap;    // m along the ray: first knot, distance of knots
@@ -30,14 +30,14 @@ struct FlameChord {       // range of a ray in a tube
 };
 
 // Bounding sphere of two pieces of tube; w: its square radius.
-FW_SHARED_FN vec4 flameBall(FlameNode a, FlameNode middle, FlameNode b, float reach) {
+FW_FN vec4 flameBall(FlameNode a, FlameNode middle, FlameNode b, float reach) {
     vec3 half_ = 0.5f * (vec3(b.centre) - vec3(a.centre));
     vec3 centre = vec3(a.centre) + half_;
     float wide = reach + length(vec3(middle.centre) - centre);
     return vec4(centre, dot(half_, half_) + wide * wide);
 }
 
-FW_SHARED_FN vec2 flameWiden(vec2 span, vec4 ball, vec3 from, vec3 direction, bool used) {
+FW_FN vec2 flameWiden(vec2 span, vec4 ball, vec3 from, vec3 direction, bool used) {
     vec3 to = vec3(ball) - from;
     float at = dot(to, direction);
     float room = ball.w + at * at - dot(to, to);
@@ -47,7 +47,7 @@ FW_SHARED_FN vec2 flameWiden(vec2 span, vec4 ball, vec3 from, vec3 direction, bo
 }
 
 // Range of a ray in the flame (xy) and in its smoke (zw), m; x >= y: none.
-FW_SHARED_FN vec4 flameSpans(FW_FLAME_OF FlameRecord f, vec3 from, vec3 direction) {
+FW_FN vec4 flameSpans(FW_FLAME_OF FlameRecord f, vec3 from, vec3 direction) {
     vec2 fire = vec2(1e9f, -1e9f);
     vec2 smoke = fire;
     FW_UNROLL
@@ -72,9 +72,9 @@ struct FlamePieces {      // of the curve: planes to find the piece of a point
     vec4 middle[kFlamePieces];
 };
 
-FW_SHARED_FN uint flameNodeOf(uint piece) { return min(piece * kFlameSkip, kFlameNodes - 1u); }
+FW_FN uint flameNodeOf(uint piece) { return min(piece * kFlameSkip, kFlameNodes - 1u); }
 
-FW_SHARED_FN FlamePieces flamePieces(FW_FLAME_ALONE) {
+FW_FN FlamePieces flamePieces(FW_FLAME_ALONE) {
     FlamePieces pieces;
     FW_UNROLL
     for (uint k = 0u; k <= kFlamePieces; ++k) {
@@ -89,7 +89,7 @@ FW_SHARED_FN FlamePieces flamePieces(FW_FLAME_ALONE) {
 
 // Coordinates in the nearest piece whose planes enclose the point; the curve continues straight
 // before its base and beyond its end.
-FW_SHARED_FN FlamePlace flamePlaceNear(FW_FLAME_OF FlamePieces pieces, vec3 x) {
+FW_FN FlamePlace flamePlaceNear(FW_FLAME_OF FlamePieces pieces, vec3 x) {
     float best = 1e30f;
     uint at = 0u;
     float before = 0.0f; float after = 1.0f;
@@ -111,19 +111,18 @@ FW_SHARED_FN FlamePlace flamePlaceNear(FW_FLAME_OF FlamePieces pieces, vec3 x) {
                         before, after);
 }
 
-FW_SHARED_FN vec4 flameKnot(FW_FLAME_OF FlamePieces pieces, vec3 x) {
+FW_FN vec4 flameKnot(FW_FLAME_OF FlamePieces pieces, vec3 x) {
     FlamePlace at = flamePlaceNear(FW_FLAME_IT pieces, x);
     return vec4(at.p, at.s, at.radius);
 }
 
 // Is the nearest place continuous over an interval? It jumps between the sides of a loop.
-FW_SHARED_FN bool flameWhole(FlameChord chord, vec4 delta) {
+FW_FN bool flameWhole(FlameChord chord, vec4 delta) {
     return abs(delta.z) <= 3.0f * chord.gap + 1e-6f;
 }
 
 // Extends the chord by an interval's burning range. A discontinuous interval burns nowhere.
-FW_SHARED_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, vec4 knot,
-                                      vec4 delta) {
+FW_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, vec4 knot, vec4 delta) {
     bool whole = flameWhole(chord, delta);
     vec4 slack = 0.125f * vec4(abs(delta.x), abs(delta.y), abs(delta.z), abs(delta.w));
     FW_UNROLL
@@ -140,7 +139,7 @@ FW_SHARED_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, 
 }
 
 // u: in gaps from the first knot.
-FW_SHARED_FN FlamePlace flameAlong(vec4 knot, vec4 delta[kFlameIntervals], float u) {
+FW_FN FlamePlace flameAlong(vec4 knot, vec4 delta[kFlameIntervals], float u) {
     FW_UNROLL
     for (uint k = 0u; k < kFlameIntervals; ++k) knot += delta[k] * clamp(u - float(k), 0.0f, 1.0f);
     FlamePlace place;
@@ -154,8 +153,8 @@ struct FlameSmokeRay {
     FlameRay front; FlameRay back;
 };
 
-FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, FlamePlace at, vec3 x,
-                                          FlameSun sun, bool behind, float d) {
+FW_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, FlamePlace at, vec3 x,
+                                   FlameSun sun, bool behind, float d) {
     vec2 smoke = flameSmoke(f, at);
     FlameMedium m;
     m.soot = 0.0f; m.smoke = f.air.w * smoke.x; m.smokeShade = smoke.y; m.emission = vec3(0.0f);
@@ -168,13 +167,13 @@ FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, Flam
     return ray;
 }
 
-FW_SHARED_FN FlameRay flameBehind(FlameRay ray, FlameRay behind) {
+FW_FN FlameRay flameBehind(FlameRay ray, FlameRay behind) {
     ray.radiance += ray.through * behind.radiance;
     ray.through *= behind.through;
     return ray;
 }
 
-FW_SHARED_FN FlameRay flameBetween(FlameRay fire, FlameSmokeRay smoke) {
+FW_FN FlameRay flameBetween(FlameRay fire, FlameSmokeRay smoke) {
     FlameRay all;
     all.radiance = smoke.front.radiance +
                    smoke.front.through * (fire.radiance + fire.through * smoke.back.radiance);

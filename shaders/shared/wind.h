@@ -6,12 +6,12 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kWindBits = 10u;
-FW_SHARED_CONST int kWindZero = 512;
-FW_SHARED_CONST int kMaxWind = 511;
+FW_CONST uint kWindBits = 10u;
+FW_CONST int kWindZero = 512;
+FW_CONST int kMaxWind = 511;
 
 // mm/s. A word of 0 is no wind.
-FW_SHARED_FN ivec3 unpackWind(uint word) {
+FW_FN ivec3 unpackWind(uint word) {
     if (word == 0u) return ivec3(0, 0, 0);
     return ivec3((int(word & 1023u) - kWindZero) * 250,
                  (int((word >> 10u) & 1023u) - kWindZero) * 250,
