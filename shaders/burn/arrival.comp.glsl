@@ -1,8 +1,6 @@
 // The front kernel over the gathered rows, one thread per row: a ring moves along the row, so that
 // a texel loads one column. Writes arrivals to `pendingTick`, changed texels to masks, the earliest
 // future arrival to the tile, and which texels are settled. Jacobi: reads states, writes none.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(STATE) FW_READ(RUN)
 FW_READ(SCRATCH_QUADS) FW_READ(COUNTERS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(SCRATCH)

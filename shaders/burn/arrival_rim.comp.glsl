@@ -1,7 +1,5 @@
 // `arrival` for rim texels: their ring is anywhere in the map and found through links. One thread
 // per gathered texel; runs after `arrival` and adds to its rows' words.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(LINK_QUADS)
 FW_READ(TILES) FW_READ(STATE) FW_READ(RUN) FW_READ(SCRATCH_QUADS) FW_READ(COUNTERS)

@@ -1,8 +1,6 @@
 // Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and
 // of the world, in hashed order (requestOrder). They join the burn list, and only listed tiles are
 // lit afterwards. With kSwitchRequests the front's due tiles request here. One group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(RUN) FW_READ(MASKS) FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(TILE_STATE)
 FW_READ_WRITE(OBJECT_COUNTERS) FW_COHERENT(COUNTERS) FW_PUSH(StepPush)

@@ -1,8 +1,6 @@
 // Writes the new ticks (one thread per gathered row), keeps tiles with pending arrivals listed, and
 // touches the tiles that depend on a changed texel (one thread per due tile). The halves are
 // independent: tiles are read, texels written.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(RUN) FW_READ(PENDING) FW_READ(SCRATCH_QUADS) FW_READ(MASKS)
 FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(STATE)

@@ -1,8 +1,6 @@
 // Applies a step's texel events, 64 per group: a texel's run of events by the thread of its first,
 // in order. FW_ALL_TEXELS: runs that address all texels of an object, one thread per texel. The
 // front kernel reacts in the same step.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(EVENTS) FW_READ(TEXELS) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE)
 FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(HEAT)

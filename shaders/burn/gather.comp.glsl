@@ -2,8 +2,6 @@
 // rows of a tile have any, and a software device pays for idle lanes. Rim texels go to
 // `arrival_rim` unseen. A tile that woke for a known arrival needs no kernel: its other arrivals
 // are known too. Where texels just caught, settled texels are skipped. One thread per row.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(TILE_WORDS) FW_READ(STATE_QUADS) FW_READ(STATE) FW_READ(RUN) FW_READ(PENDING_QUADS)
 FW_READ(SETTLED) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(MASK_WORDS) FW_READ_WRITE(COUNTERS)

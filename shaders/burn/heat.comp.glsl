@@ -4,8 +4,6 @@
 // threads each, and finishes them with one thread each. A thread scans a row for due texels, which
 // are listed and shared out, as fire rarely fills a tile. Tiles that stay hot are appended
 // together, to reduce contention on the list's counter.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(STATE_QUADS) FW_READ(HEAT_PAIRS)
 FW_READ(TILE_HEAT) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)

@@ -1,8 +1,6 @@
 // Predicted arrival ahead of the front, cosmetic: one ring further each frame, up to the object's
 // horizon. One thread per gathered row, along which a ring moves as in `arrival`; predict_commit
 // writes the times. Single hops, no pairs.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(SCRATCH_QUADS) FW_READ(PREDICT)
 FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH)

@@ -1,7 +1,5 @@
 // Ends a prediction round: first the new times of the gathered rows and the fire's distance to wet
 // texels; then, from times that no thread writes any more, the gradients. One thread per row.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(COUNTERS) FW_READ(SCRATCH_QUADS) FW_READ_WRITE(PREDICT)
 #include "lib/predict.glsl"

@@ -2,8 +2,6 @@
 // rows for `predict`, rim texels for `predict_rim`; updates the fire's distance to wet texels.
 // Known arrivals are revisited about every eighth frame. Skips objects that no view shows. Writes
 // only what the next round reads. One thread per row.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(TILE_WORDS) FW_READ(STATE_QUADS) FW_READ(PREDICT) FW_READ(PREDICT_QUADS)
 FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH) FW_WRITE(SCRATCH_QUADS)

@@ -1,7 +1,5 @@
 // Adds the marked tiles of an object that a view shows again to the predict list. One thread per
 // tile.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_PUSH(StepPush)
 #include "lib/predict_list.glsl"

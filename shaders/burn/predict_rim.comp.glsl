@@ -1,6 +1,4 @@
 // `predict` for rim texels, whose ring is anywhere in the map. One thread per gathered texel.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(LINK_QUADS) FW_READ(PREDICT)
 FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(SCRATCH)

@@ -1,8 +1,6 @@
 // Copies states that are no arrival (wet, put out, ...) to the predicted buffer of the predict
 // list's tiles. For an object that no view shows, burning texels are copied, too; an object that a
 // view shows again drops its predictions. A thread writes its own row only.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(STATE_QUADS) FW_READ(COUNTERS) FW_READ(PREDICT_LISTS) FW_READ_WRITE(TILE_STATE)
 FW_READ_WRITE(PREDICT)

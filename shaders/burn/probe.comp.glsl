@@ -1,6 +1,4 @@
 // Collects the state of the probed texels for the readback.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(STATE) FW_READ(PROBES) FW_READ(HEAT) FW_WRITE(ANSWERS) FW_PUSH(StepPush)
 

@@ -1,8 +1,6 @@
 // Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without
 // burnt-out tiles. 64 list entries per group. kSwitchDisplayOnly: BurnTiles only; after a load the
 // first frame shows flames while counts stay those of the save.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(HEAT)
 FW_READ(TILE_FIRE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)

@@ -1,6 +1,4 @@
 // Zeroes the per-object counts and fire sources that the next passes sum up.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(SOURCES) FW_PUSH(StepPush)
 

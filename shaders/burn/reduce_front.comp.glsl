@@ -1,6 +1,4 @@
 // Counts the front list's tiles per object.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(TILE_STATE) FW_READ(LISTS) FW_READ(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)
 FW_PUSH(StepPush)

@@ -1,6 +1,4 @@
 // Initial state of a new object: receptive and inert texels, tiles asleep. One group per tile.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(SLOWNESS)
 FW_READ_WRITE(TILE_STATE) FW_WRITE(STATE) FW_WRITE(PREDICT) FW_WRITE(GRADIENT)

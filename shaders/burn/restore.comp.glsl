@@ -1,7 +1,5 @@
 // Tiles of a restored object: into the lists that contained them, which are stored in `wake`. One
 // thread per tile.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_PUSH(StepPush)
 #include "lib/front_list.glsl"

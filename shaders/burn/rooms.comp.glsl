@@ -1,7 +1,5 @@
 // Rooms, before a heat step: oxygen consumption, ventilation, burning strength of each object, and
 // flashover. One group: sums per room use shared memory, in any order.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "shared/room.h"
 FW_READ(OBJECTS) FW_READ(ROOMS) FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(ROOM_AIR)

@@ -1,7 +1,5 @@
 // Sorts the front list into due tiles (run list) and waiting tiles (the other list); the rest
 // leaves. With the dense switch all tiles of the wake groups run instead.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(WAKE_GROUPS) FW_READ(EXCHANGE_OBJECTS) FW_READ(OBJECT_COUNTERS)
 FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(RUN) FW_WRITE(MASKS) FW_PUSH(StepPush)

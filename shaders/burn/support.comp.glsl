@@ -3,8 +3,6 @@
 // tile, in two phases: 0 computes from the neighbours' last values what 1 writes, so the order of
 // threads does not matter. Distances converge by one tile per frame; cycles count up to the limit.
 // Not part of the simulation, which has no gravity.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(DEPENDENTS) FW_READ(TILES)
 FW_READ(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(SCRATCH) FW_READ_WRITE(PREDICT)

@@ -1,7 +1,5 @@
 // A wind or pose latch: touches the tiles that may change, which are listed or changed within the
 // correction window. One group per 64 tiles of an object.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(WAKE_GROUPS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
 FW_PUSH(StepPush)

@@ -40,13 +40,20 @@ function(flamewright_shaders target function)
         list(TRANSFORM words PREPEND "-D")
         string(MAKE_C_IDENTIFIER "k_${name}" variable)
         set(header ${generated}/${name}.inc)
+        # What every shader begins with. Its own text is included, so that errors name its lines.
+        set(begin ${generated}/${name}.glsl)
+        file(CONFIGURE OUTPUT ${begin} CONTENT
+"#version 450
+#extension GL_GOOGLE_include_directive : require
+#include \"${path}.glsl\"
+")
         add_custom_command(
             OUTPUT ${header}
             COMMAND ${FW_GLSLANG} --quiet -V --target-env vulkan1.0 -S ${stage}
-                    -I${CMAKE_CURRENT_SOURCE_DIR}/shaders -I${PROJECT_SOURCE_DIR}/shaders
-                    -I${PROJECT_SOURCE_DIR}/runtime ${words}
-                    --vn ${variable} --depfile ${header}.d -o ${header} ${source}
-            DEPENDS ${source}
+                    -I${CMAKE_CURRENT_SOURCE_DIR} -I${CMAKE_CURRENT_SOURCE_DIR}/shaders
+                    -I${PROJECT_SOURCE_DIR}/shaders -I${PROJECT_SOURCE_DIR}/runtime ${words}
+                    --vn ${variable} --depfile ${header}.d -o ${header} ${begin}
+            DEPENDS ${begin} ${source}
             DEPFILE ${header}.d
             COMMENT "Shader ${name}"
             VERBATIM)

@@ -1,8 +1,6 @@
 // Inner skin of receding meshes: drawn vertices seen from inside. It stays in place while the outer
 // wall burns away, and recedes when little of the wall is left. Holes open in both skins at once.
 // kDeformGroup vertices of one object per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
 FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN) FW_READ(VERTICES)
 

@@ -1,8 +1,6 @@
 // Link cache of sheets: links and bending constraints that hold, pinned neighbours, charred shares,
 // and the nearest pin point. Runs every kLinkCacheSteps steps. kDeformGroup particles of one object
 // per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
 FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SOFT)
 

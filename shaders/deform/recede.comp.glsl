@@ -1,6 +1,4 @@
 // Burnt share of each particle, and its recession. kDeformGroup particles of one object per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
 FW_READ(STATE) FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 

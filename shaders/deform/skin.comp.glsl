@@ -1,7 +1,5 @@
 // Copies the positions, and normals if given, of an object's vertices from the host's vertex
 // buffer; otherwise skin-to-mesh makes normals. 64 vertices per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "shared/deform.h"
 FW_BUFFER(SKIN_SOURCES, readonly, uint, sources) FW_BUFFER(SKIN_GIVEN, readonly, uint, given)

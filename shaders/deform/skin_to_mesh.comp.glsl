@@ -1,7 +1,5 @@
 // Skin-to-mesh: drawn vertices follow their particles, and rest normals rotate with their
 // triangles. kDeformGroup vertices of one object per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
 FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN) FW_BUFFER(SHOWN, writeonly, uint, shownWords)
 

@@ -2,8 +2,6 @@
 // the resulting velocity. It applies its own bend correction now and those of its neighbours from
 // the last step, since theirs are only known after this step. kDeformGroup particles of one object
 // per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
 FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 #include "lib/object_quads.glsl"

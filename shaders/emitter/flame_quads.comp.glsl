@@ -1,8 +1,6 @@
 // Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of
 // ignition ticks: nothing is stored, and nothing pops. Each of a tile's slots shows one short life
 // after another, fixed by the state at its birth.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)

@@ -2,8 +2,6 @@
 // together. One group: few quads use a bitonic sort in shared memory, more a stable radix sort (a
 // third of the work for 2,500 on a software device). Emissive quads may come in any order:
 // placeLights interleaves them.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #define FW_THREADS 128
 #include "lib/compute.glsl"
 #include "lib/view.glsl"

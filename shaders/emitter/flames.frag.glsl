@@ -1,9 +1,7 @@
-#version 450
 // A tongue of flame, puff of smoke, fireball or spark. Tongue: a profile sampled at a displaced
 // height (zero-mean noise that scrolls upwards and narrows with height); soot glows in thin sheets
 // where the noise is zero. Fireball: noise advected by two vortices, eroded with age. Output is
 // premultiplied: colour, and coverage.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;

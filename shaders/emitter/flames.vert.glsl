@@ -1,8 +1,6 @@
-#version 450
 // A quad of flame, smoke, fire or spark: stands along its axis and turns about it towards the
 // camera (see billboard). All quads are one draw of six vertices each: some devices pay per
 // instance.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 FW_READ(FLAMES) FW_READ(DRAW_ARGS)
 #ifdef FW_FLIPBOOKS

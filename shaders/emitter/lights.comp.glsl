@@ -1,8 +1,6 @@
 // Clusters burning tiles into clusters, and clusters into the strongest lights, which take over the
 // power of all clusters: no watt is lost. One group; integer sums make the result independent of
 // order.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #define FW_THREADS 128
 #include "lib/compute.glsl"
 #include "lib/view.glsl"

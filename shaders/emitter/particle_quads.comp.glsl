@@ -1,6 +1,4 @@
 // Particles to quads of the frame's view. A group handles a part of one emitter's ring.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 #include "shared/particle.h"

@@ -1,8 +1,6 @@
 // Births and one frame of motion of all emitters' particles. A group handles a part of one
 // emitter's ring. A software device executes an `if` body for every particle, so births and
 // collisions have loops of their own over the few iterations that have any.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "shared/particle.h"
 FW_READ(COUNTERS) FW_READ(BURN_TILES) FW_READ(EMITTERS) FW_READ(EMITTER_GROUPS)

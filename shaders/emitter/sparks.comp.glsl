@@ -1,7 +1,5 @@
 // Sparks and embers of all sources to quads of the frame's view: from a source's slots, or from
 // slots of burning tiles. No state is stored: see shared/spark.h.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 #include "shared/flipbook.h"

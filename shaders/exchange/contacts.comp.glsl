@@ -1,6 +1,4 @@
 // Fire across gaps of a few centimetres: a texel's run of links by the thread of its first link.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/light.glsl"
 FW_READ(MATERIALS) FW_READ(CONTACTS)
 

@@ -1,7 +1,5 @@
 // Removes embers whose path an occluder box or the heat-occlusion grid crosses. One thread per
 // object slot.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(OBJECT_COUNTERS) FW_READ(EXCHANGE_OBJECTS) FW_READ(EXCHANGE_TILES)
 FW_READ(HEAT_OCCLUDERS) FW_READ_WRITE(SOURCES) FW_PUSH(ExchangePush)

@@ -1,7 +1,5 @@
 // Landing of the remaining embers: whether each lights its target. A thread per object slot handles
 // its sources; embers are rare.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/light.glsl"
 FW_READ(EXCHANGE_TILES) FW_READ(SOURCES)
 #include "lib/tile.glsl"

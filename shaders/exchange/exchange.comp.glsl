@@ -1,8 +1,6 @@
 // Heat from sources to the tiles of the objects that they may heat, an eighth of the tiles per
 // exchange. One group per receiver, one thread per tile. FW_HEAT_OCCLUSION: with a heat-occlusion
 // grid; a variant, as a software device executes loop bodies once even without active lanes.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(EXCHANGE_OBJECTS) FW_READ(EXCHANGE_TILES) FW_READ(SOURCES)
 FW_READ(RECEIVERS) FW_READ(HEAT_OCCLUDERS) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)

@@ -1,7 +1,5 @@
 // Sums burning tiles into the fire sources of their objects, in any order. 64 of the tiles found by
 // `reduce` per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(COUNTERS) FW_READ(OBJECTS) FW_READ(BURN_TILES) FW_READ(EXCHANGE_OBJECTS)
 FW_READ(EXCHANGE_TILES) FW_READ_WRITE(SOURCES) FW_PUSH(ExchangePush)

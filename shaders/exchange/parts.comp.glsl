@@ -1,7 +1,5 @@
 // Fire between parts of one mesh, over gaps of a few centimetres. 64 of the tiles found by `reduce`
 // per group. All ignitions have the exchange's tick, so order does not matter.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/light.glsl"
 #include "lib/tile.glsl"
 FW_READ(BURN_TILES) FW_READ(EXCHANGE_TILES) FW_READ(MATERIALS)

@@ -1,8 +1,6 @@
 // One step of particle fields. A thread walks up a strip of four columns and computes for each row
 // what its six columns (one left to one right of the strip) give, so threads exchange nothing.
 // Emission comes last. Eight strips are a unit; a group holds units of whole fields.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "field/field.glsl"
 FW_READ_WRITE(FIELD_QUADS)  // four cells of a row
 #ifdef FW_TEXELS

@@ -1,8 +1,6 @@
 // A particle field: density by cubic splines between cells, fine structure by tiled noise that the
 // motion advects in two phases. Emission uses the volumetric fires' profile; absorption takes sun
 // and sky; refraction has a specular surface. Output is premultiplied: colour, and coverage.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "shared/field_draw.h"
 #include "shared/volume.h"

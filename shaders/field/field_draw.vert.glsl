@@ -1,7 +1,5 @@
 // A particle field's body, generated from the vertex number: a billboard that turns about its up
 // axis, or a spheroid around which the field is wound, displaced by density if requested.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "shared/field_draw.h"
 FW_READ(FIELD_DRAWS) FW_READ(FIELD_SHOWN)

@@ -1,7 +1,5 @@
 // New masks of particle fields, one group per field: walls and painted emission. Particles under a
 // new wall die. A fresh field becomes empty.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "field/field.glsl"
 FW_READ_WRITE(FIELD_CELLS)
 

@@ -1,8 +1,6 @@
 // Displayed cells of particle fields: density between the last two steps, advected by each cell's
 // motion so that nothing jumps, and the share of sunlight. kFieldShowGroups groups per field.
 // Cosmetic.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 #include "shared/field.h"

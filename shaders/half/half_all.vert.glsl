@@ -1,4 +1,3 @@
-#version 450
 // Covers the viewport.
 void main() {
     uint corner = uint(gl_VertexIndex) % 6u;

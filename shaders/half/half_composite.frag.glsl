@@ -1,8 +1,6 @@
-#version 450
 // Composites the half-resolution target. Of the four texels around a pixel, those drawn against a
 // similar depth count, so edges of objects in flames and smoke stay at full resolution.
 // Premultiplied, encoded and blended: `over` is associative.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
 layout(set = 1, binding = 0) uniform sampler2D halfColor;

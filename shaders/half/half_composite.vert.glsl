@@ -1,6 +1,4 @@
-#version 450
 // Draws the tiles of the half-resolution target that show anything.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
 layout(set = 2, binding = 0) uniform sampler2D halfDepth;  // below it: output of half_tiles.frag

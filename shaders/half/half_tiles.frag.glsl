@@ -1,6 +1,4 @@
-#version 450
 // 1 where a tile, or an adjacent texel that its pixels sample, shows anything.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
 layout(set = 1, binding = 0) uniform sampler2D halfColor;

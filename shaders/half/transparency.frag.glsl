@@ -1,4 +1,3 @@
-#version 450
 // The host's image before our drawing; the blend constant is its weight.
 layout(set = 1, binding = 0) uniform sampler2D hostColor;
 layout(location = 0) out vec4 outColor;

@@ -4,8 +4,6 @@
 // is written as vertices, with inner skin and walls along the hole and along open edges; without
 // capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes keep triangles
 // whole until all of a triangle is gone, and only get walls along open edges.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/refine.glsl"
 FW_READ(REFINE_WORDS) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS)
 FW_READ(REFINE_LEVELS) FW_READ(REFINE_VERTICES) FW_READ(PREDICT) FW_READ(GRADIENT) FW_READ(VERTICES)

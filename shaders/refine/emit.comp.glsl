@@ -1,7 +1,5 @@
 // One lane per output triangle of the objects whose levels changed: finds its coarse triangle,
 // looks up the pattern, writes three draw vertices.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/refine.glsl"
 FW_READ(REFINE_WORK) FW_READ(REFINE_WORDS) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_LEVELS)
 FW_WRITE(REFINE_INDICES)

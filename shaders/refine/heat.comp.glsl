@@ -1,8 +1,6 @@
 // Heats the edges and interiors near the tiles of the front (lit soon, or moving) or of the burn
 // list, ahead of the fire. One lane per tile. For fresh objects all burnt tiles are heated once,
 // one workgroup per object, so their holes are there in the first frame.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/refine.glsl"
 FW_READ(TILE_STATE) FW_READ(COUNTERS) FW_READ(LISTS) FW_READ(BURN_LISTS) FW_READ(REFINE_WORK)
 FW_READ(REFINE_WORDS) FW_READ(PREDICT) FW_READ(GRADIENT) FW_READ_WRITE(REFINE_HEAT)

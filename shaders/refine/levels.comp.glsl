@@ -1,8 +1,6 @@
 // Levels of edges and interiors, in phases with a barrier between: 0 aim (items); 1 triangles for
 // each bias (only over budget); 2 least bias that fits (one group); 3 move (items); 4 pack
 // (triangles): changed objects emit, moving items are listed to be placed.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/refine.glsl"
 FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS) FW_READ_WRITE(REFINE_WORK)
 FW_READ_WRITE(REFINE_HEAT) FW_READ_WRITE(REFINE_ITEMS) FW_READ_WRITE(REFINE_LEVELS)

@@ -1,8 +1,6 @@
 // Positions of moving vertices, in phases with a barrier between: 0 corners, one lane each; 1
 // moving edges, one lane each, positions and then the morph of their newest points; 2 interiors,
 // half a workgroup each; 3 their morph.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/refine.glsl"
 FW_READ(REFINE_WORK) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS)
 FW_READ(REFINE_ITEMS) FW_READ(REFINE_LEVELS) FW_READ(PREDICT) FW_READ(GRADIENT)

@@ -1,7 +1,5 @@
 // Output offset of each triangle: an exclusive sum, one workgroup per object whose levels changed.
 // Writes draw arguments and lists the output to be emitted. Readbacks report the sums.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #define FW_THREADS 128
 #include "lib/refine.glsl"
 FW_COHERENT(REFINE_WORK) FW_COHERENT(REFINE_LEVELS) FW_WRITE(REFINE_DRAWS) FW_WRITE(OBJECT_COUNTERS)

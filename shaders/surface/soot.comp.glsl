@@ -1,8 +1,6 @@
 // Soot that flames leave on surfaces above them, stored in the low byte of each texel's gradient;
 // 255: matt black. It grows towards the current fires' soot and never fades. One thread per tile
 // row; a part of all tiles each frame, round-robin. Cosmetic.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 FW_READ(OBJECTS) FW_READ(TEXELS) FW_READ(PREDICT) FW_READ(LIGHTS) FW_READ_WRITE(TILE_STATE)

@@ -1,7 +1,5 @@
-#version 450
 // A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and
 // lights the result. Writes linear HDR or encoded colour.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "shared/heat.h"
 

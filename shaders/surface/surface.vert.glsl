@@ -1,7 +1,5 @@
-#version 450
 // Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far
 // from the world's origin. Lights small triangles per vertex.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "surface/plume.glsl"
 

@@ -1,8 +1,6 @@
-#version 450
 // A volumetric flame along one ray, or many for a small flame, or the part in one slab, for views
 // without a previous march. Emission and absorption are exact per step, so brightness depends
 // neither on the number of steps nor of slabs. Output is premultiplied: light, and coverage.
-#extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;

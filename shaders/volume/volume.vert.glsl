@@ -1,7 +1,5 @@
-#version 450
 // One slab of a volumetric flame: its screen bounds as two polygons, see makeDepthTest. Instances
 // go from far to near.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
 layout(push_constant) uniform Push { VolumeDraw draw; };

@@ -1,9 +1,7 @@
-#version 450
 // A slab of a marched flame at a pixel: the nearest nine march pixels, weighted so that the four
 // sample phases count alike; for a small flame all that lie in the pixel. With the host's depth:
 // light in front of it, else light on the flame's side of the base plane, which light of
 // neighbouring march pixels would cross.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 

@@ -1,6 +1,4 @@
-#version 450
 // A marched flame's visible tiles, slab by slab from far to near, each at its slab's depth.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/buffers.glsl"
 #include "shared/burn.h"
 #include "shared/volume_draw.h"

@@ -1,7 +1,5 @@
-#version 450
 // Heat haze: the host's scene refracted by a volumetric flame's hot column. A pixel shows where its
 // bent ray arrives, without objects in front of the column, so no foreground smears.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "shared/volume_draw.h"
 #include "shared/volume_haze.h"

@@ -1,7 +1,5 @@
-#version 450
 // Screen bounds of a volumetric flame's hot column as a grid: eddies are wider than its cells, so
 // refraction is evaluated at corners and interpolated.
-#extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
 #include "shared/volume_haze.h"
 

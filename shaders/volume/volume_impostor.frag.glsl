@@ -1,8 +1,6 @@
-#version 450
 // A flame's billboard impostor at a pixel: its mean over the pixel's square, so a small impostor
 // keeps its light. With the host's depth: what lies in front of it, else what lies on the flame's
 // side of the base plane.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 

@@ -1,7 +1,5 @@
-#version 450
 // A flame's billboard impostor: a previous march of it, or of a similar flame, facing the camera at
 // its current size.
-#extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
 layout(push_constant) uniform Push { VolumeImpostor draw; };

@@ -1,9 +1,7 @@
-#version 450
 // March of a volumetric flame's rays, one per march pixel of a few pixels, stored slab by slab: a
 // slab's contribution does not depend on the scene, whose depth is known later per pixel and
 // selects slabs. A workgroup is a tile listed by volume_probe. FW_SMOKE (volume_smoke): with smoke,
 // which would cost a sixth of the march on devices that do not skip branches.
-#extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

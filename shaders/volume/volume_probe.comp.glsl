@@ -1,7 +1,5 @@
-#version 450
 // Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart,
 // with a margin around what they meet. Lists the tiles to march, each with its range of samples.
-#extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
 
 layout(local_size_x = 64) in;

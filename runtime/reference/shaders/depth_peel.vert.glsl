@@ -1,6 +1,4 @@
-#version 450
 // Depth pre-pass of an object's mesh, both sides; see surface.vert.
-#extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 

@@ -1,8 +1,6 @@
 // One step of the reference's sixteen-tap kernel over a whole object, for comparison. A lane takes
 // a column of eights row by row and keeps the five rows around it, as taps overlap and loads
 // dominate on a software device.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "reference/published.h"
 FW_READ(OBJECTS) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)

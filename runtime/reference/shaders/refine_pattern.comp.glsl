@@ -1,8 +1,6 @@
 // Refinement pattern of the reference, in phases with a barrier between: 0 places all pattern
 // vertices, one lane each; 1 writes the vertices of each triangle that the host's statuses draw,
 // degenerate if consumed.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "reference/pattern_word.h"
 // Per frame, of phase 0: object slot, first of 64 pattern vertices; of phase 1: of 64 listed

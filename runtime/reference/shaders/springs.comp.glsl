@@ -1,8 +1,6 @@
 // One step of the reference's mass-spring model, eqs. (3) to (8): structure and shear springs to
 // the neighbours, flexion springs across, and the force of decomposition. Semi-implicit Euler.
 // kDeformGroup particles of one object per group.
-#version 450
-#extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
 #include "reference/springs.h"
 // Of particles: links of pass 0 of all, then of pass 1.

@@ -1,7 +1,5 @@
-#version 450
 // A slice of a volumetric flame's lattice: one sample, weighted by the slice spacing along its ray,
 // so brightness does not depend on the number of slices. Premultiplied.
-#extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
 #include "reference/slices_push.h"
 

@@ -1,7 +1,5 @@
-#version 450
 // Sliced lattice of a volumetric flame: an instance is a plane across the view, far to near; it
 // contains the polygon that the plane cuts out of each lattice piece.
-#extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
 #include "reference/slices_push.h"
 
