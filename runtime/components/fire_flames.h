@@ -4,7 +4,7 @@
 #include "components/volumetric_fire.h"
 #include "core/assert.h"
 #include "core/owned.h"
-#include "shared/volume_flame.h"
+#include "shared/volume.h"
 
 namespace fw::components {
 

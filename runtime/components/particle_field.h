@@ -3,7 +3,7 @@
 #pragma once
 #include "field/field.h"
 #include "flamewright/flamewright.h"
-#include "shared/field_draw.h"
+#include "shared/field.h"
 
 namespace fw::components {
 

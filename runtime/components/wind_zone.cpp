@@ -3,7 +3,7 @@
 #include "components/pose.h"
 #include "core/assert.h"
 #include "core/error.h"
-#include "shared/wind.h"
+#include "shared/burn.h"
 
 #include <algorithm>
 #include <cmath>

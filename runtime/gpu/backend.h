@@ -106,7 +106,7 @@ struct Probe {
     uint32_t object = 0, texel = 0;
 };
 
-struct VolumeFlame;    // shared/volume_flame.h
+struct VolumeFlame;    // shared/volume.h
 struct VolumeUpdate {  // the volumetric flames that draws show from this frame on; cosmetic
     const VolumeFlame* flames = nullptr;  // their bounds are in the records
     uint32_t count = 0;                   // at most kMaxVolumeFlames
@@ -128,7 +128,7 @@ struct EmitterUpdate {   // fire emitters in this frame; cosmetic
 struct FieldRun {                  // a step of a particle field
     uint32_t field = 0, step = 0;  // slot; its number, from 0
 };
-struct FieldDraw;  // shared/field_draw.h
+struct FieldDraw;  // shared/field.h
 struct FieldUpdate {
     std::span<const FieldRun> runs;    // round by round; in one a field is once at most
     std::span<const uint32_t> rounds;  // where each ends
@@ -250,7 +250,7 @@ class Backend {
                                  std::span<const glm::vec3> /*places*/) {}
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
-    // The wind that zones add at an object, packed (shared/wind.h). Cosmetic.
+    // The wind that zones add at an object, packed (shared/burn.h). Cosmetic.
     virtual void setObjectWind(uint32_t /*slot*/, uint32_t /*wind*/) {}
     // Pose, tint and flags; the rest of the record stays.
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,

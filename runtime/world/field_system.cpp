@@ -2,7 +2,7 @@
 #include "world/field_system.h"
 
 #include "shared/exchange.h"
-#include "shared/field_draw.h"
+#include "shared/field.h"
 #include "world/burn_system.h"
 #include "world/geometry.h"
 #include "world/recording.h"

@@ -1,7 +1,7 @@
 #include "world/wind_system.h"
 
 #include "host_limits.h"
-#include "shared/wind.h"
+#include "shared/burn.h"
 #include "world/geometry.h"
 #include "world/recording.h"
 #include "world/shift.h"

@@ -4,15 +4,13 @@
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(RUN) FW_READ(MASKS) FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(TILE_STATE)
 FW_READ_WRITE(OBJECT_COUNTERS) FW_COHERENT(COUNTERS) FW_PUSH(StepPush)
+#define FW_LISTS FW_COHERENT
 #include "lib/burn_budget.glsl"
 #include "lib/tile.glsl"
 
-uint asked(uint i) { return push.predictParity == 0u ? predictB[i] : predictA[i]; }
-uint markOf(uint worldTile) { return push.burnParity == 0u ? burnB[worldTile] : burnA[worldTile]; }
-void setMark(uint worldTile, uint mark) {
-    if (push.burnParity == 0u) burnB[worldTile] = mark;
-    else burnA[worldTile] = mark;
-}
+uint asked(uint i) { return predictLists[2u * i + (push.predictParity ^ 1u)]; }
+uint markOf(uint worldTile) { return burnLists[markAt(worldTile)]; }
+void setMark(uint worldTile, uint mark) { burnLists[markAt(worldTile)] = mark; }
 
 uvec4 orderOf(uint worldTile) {
     TileRef tile = tileRef(worldTile);

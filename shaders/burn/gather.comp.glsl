@@ -17,8 +17,11 @@ struct Row {
     uint tick[10];
 };
 
-Row rowOf(uint left, uvec4 a, uvec4 b, uint right, uint end) {
-    uint t[10] = uint[10](left, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, right);
+// left, right: the texels beside the tile are needed.
+Row rowAt(uint at, bool left, bool right, uint end) {
+    uvec4 a = stateQuads[at >> 2u], b = stateQuads[(at >> 2u) + 1u];
+    uint t[10] = uint[10](left ? state[at - 1u] : kInert, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w,
+                          right ? state[at + 8u] : kInert);
     Row r;
     r.sources = 0u;
     r.walls = 0u;
@@ -57,13 +60,9 @@ void gatherRow(uint slot, uint row) {
     if (inner != 0u) {
         bool left = (inner & 1u) != 0u;
         bool right = (inner & 0x80u) != 0u;
-        uint down = at - bases.w;
-        uint up = at + bases.w;
-        Row m = rowOf(left ? state[at - 1u] : kInert, a, b, right ? state[at + 8u] : kInert, end);
-        Row d = rowOf(left ? state[down - 1u] : kInert, stateQuads[down >> 2u],
-                      stateQuads[(down >> 2u) + 1u], right ? state[down + 8u] : kInert, end);
-        Row u = rowOf(left ? state[up - 1u] : kInert, stateQuads[up >> 2u],
-                      stateQuads[(up >> 2u) + 1u], right ? state[up + 8u] : kInert, end);
+        Row m = rowAt(at, left, right, end);
+        Row d = rowAt(at - bases.w, left, right, end);
+        Row u = rowAt(at + bases.w, left, right, end);
         // countingSources for eight texels at once: bit i is the texel in column i + 1.
         uint straight = m.sources | (m.sources >> 2u) | (u.sources >> 1u) | (d.sources >> 1u);
         uint openUp = ~(u.walls >> 1u);

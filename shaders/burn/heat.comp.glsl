@@ -213,9 +213,7 @@ void takeTile(uint worldTile) {
     }
 }
 
-uint hotTile(uint slot) {
-    return push.hotParity == 0u ? hotLists[slot].x : hotLists[slot].y;
-}
+uint hotTile(uint slot) { return hotLists[2u * slot + push.hotParity]; }
 
 // First of `count` slots of the list of tiles that stay hot.
 uint hotSlots(uint count) {
@@ -234,7 +232,8 @@ void keepHot(uint thread) {
     uint count = staying;
     if (thread == 0u) staysAt = hotSlots(count);
     barrier();
-    if (thread < count) hotStore(push.hotParity ^ 1u, staysAt + thread, stays[thread]);
+    if (thread < count)
+        hotLists[2u * (staysAt + thread) + (push.hotParity ^ 1u)] = stays[thread];
     if (thread == 0u) staying = 0u;
     barrier();
 }

@@ -10,9 +10,12 @@ FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH) FW_WRITE(SCR
 #include "lib/predict_row.glsl"
 #include "lib/gather.glsl"
 
-// Bit i: column i - 1 of the row has a time.
-uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
-    uint p[10] = uint[10](left, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, right);
+// Of the row of eight texels from `at` on. Bit i: column i - 1 has a time. left, right: the row has
+// texels there.
+uint timesAt(uint at, bool left, bool right) {
+    uvec4 a = predictQuads[at >> 2u], b = predictQuads[(at >> 2u) + 1u];
+    uint p[10] = uint[10](left ? predict[at - 1u] : kNever, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w,
+                          right ? predict[at + 8u] : kNever);
     uint times = 0u;
     FW_UNROLL for (int i = 0; i < 10; ++i) times |= hasTime(p[i]) ? 1u << uint(i) : 0u;
     return times;
@@ -102,18 +105,9 @@ void gatherRow(uint slot, uint row) {
     if (fresh != 0u) {
         bool left = tileX > 0u;
         bool right = tileX + 1u < sizes.z;
-        uint times =
-            timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
-        if (tileY > 0u || row > 0u) {
-            uint down = at - bases.w;
-            times |= timesOf(left ? predict[down - 1u] : kNever, predictQuads[down >> 2u],
-                             predictQuads[(down >> 2u) + 1u], right ? predict[down + 8u] : kNever);
-        }
-        if (tileY * 8u + row + 1u < sizes.y) {
-            uint up = at + bases.w;
-            times |= timesOf(left ? predict[up - 1u] : kNever, predictQuads[up >> 2u],
-                             predictQuads[(up >> 2u) + 1u], right ? predict[up + 8u] : kNever);
-        }
+        uint times = timesAt(at, left, right);
+        if (tileY > 0u || row > 0u) times |= timesAt(at - bases.w, left, right);
+        if (tileY * 8u + row + 1u < sizes.y) times |= timesAt(at + bases.w, left, right);
         chosen |= fresh & (rim | times | (times >> 1u) | (times >> 2u)) & 0xFFu;
     }
     if ((marks || (chosen & ~rim) != 0u) && (r.flag & kTileMarked) == 0u)

@@ -59,8 +59,7 @@ void reduceTile(uint worldTile, uint parity) {
         slot = atomicAdd(counters[row].runCount, 1u);
     } else {
         slot = listSlot(row, 64u);
-        if (parity == 0u) burnB[slot] = worldTile;
-        else burnA[slot] = worldTile;
+        burnLists[2u * slot + (parity ^ 1u)] = worldTile;
         atomicAdd(counters[row].runCount, 1u);
         atomicAdd(objectCounters[object].burning, count);
         atomicAdd(objectCounters[object].burningTiles, 1u);
@@ -95,6 +94,6 @@ void reduceTile(uint worldTile, uint parity) {
 }
 
 void reduceItem(uint i) {
-    reduceTile(push.burnParity == 0u ? burnA[i] : burnB[i], push.burnParity);
+    reduceTile(burnLists[2u * i + push.burnParity], push.burnParity);
 }
 void main() { FW_STRIDE(counters[kRowBurn + push.burnParity].listCount, reduceItem) }

@@ -31,30 +31,24 @@ void schedule(uint worldTile, bool dense) {
     }
     if (dense && (objects[tile.object].flags & kObjectExtended) != 0u) return;
     uint shift = objects[tile.object].substepShift;
-    bool wanted = runsInIteration(push.iteration, push.stepShift, shift);
-    if (!wanted) {
-        if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
-        return;
-    }
-    // Loops: devices without branches would also load under an `if`.
-    for (bool plays = (push.switches & kSwitchPlayback) != 0u; plays; plays = false) {
-        // Due once it goes live.
-        if (isPlayingBack(objectCounters[tile.object].playsUntil, push.now)) {
-            if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
-            return;
-        }
-    }
-    for (bool governed = (push.switches & kSwitchGoverned) != 0u; governed; governed = false) {
+    bool waits = !runsInIteration(push.iteration, push.stepShift, shift);
+    // Loops: devices without branches would also load under an `if`. A baked burn is due once it
+    // goes live.
+    for (bool plays = (push.switches & kSwitchPlayback) != 0u; plays; plays = false)
+        waits = waits || isPlayingBack(objectCounters[tile.object].playsUntil, push.now);
+    for (bool governed = !waits && (push.switches & kSwitchGoverned) != 0u; governed;
+         governed = false) {
         if (stoppedAt(objectCounters[tile.object].stopTick, push.now)) {
             tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside);
             return;
         }
-        if (holdsTile(flag, counters[kRowBurn + push.burnParity].listCount, push.maxTiles,
-                      objectCounters[tile.object].burningTiles, exchangeObjects[tile.object].flags,
-                      exchangeObjects[tile.object].maxTiles)) {
-            if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
-            return;
-        }
+        waits = holdsTile(flag, counters[kRowBurn + push.burnParity].listCount, push.maxTiles,
+                          objectCounters[tile.object].burningTiles,
+                          exchangeObjects[tile.object].flags, exchangeObjects[tile.object].maxTiles);
+    }
+    if (waits) {
+        if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
+        return;
     }
     uint wake = tileState[worldTile].wake;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
@@ -72,7 +66,7 @@ void schedule(uint worldTile, bool dense) {
     }
 }
 
-void scheduleItem(uint i) { schedule(push.parity == 0u ? listA[i] : listB[i], false); }
+void scheduleItem(uint i) { schedule(frontLists[2u * i + push.parity], false); }
 
 void main() {
     if ((push.switches & kSwitchDense) != 0u) {

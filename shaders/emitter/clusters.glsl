@@ -1,6 +1,6 @@
 // Hash grid of heat-release clusters: two sizes per object, keyed by place. Slots depend on
 // thread order, contents do not.
-#include "shared/integer.h"
+#include "shared/types.h"
 
 float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8)); }
 // Side of the clusters that form lights, m: fixed per object, so nothing pops.

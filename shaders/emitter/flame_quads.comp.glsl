@@ -3,6 +3,7 @@
 // after another, fixed by the state at its birth.
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
+#include "shared/particle.h"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)
 FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
@@ -15,10 +16,6 @@ FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 const float kMinPixels = 20.0;  // of a flame's height
 const float kMaxMerged = 1.6;    // height factor of merged flames
 const float kMaxClear = 0.9;     // half widths, see clearance
-
-vec3 perpendicular(vec3 n) {
-    return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
-}
 
 // Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces
 // the camera and its wall does not, so one side would intersect the wall. Quads on walls facing
@@ -153,7 +150,7 @@ void main() {
             vec3 place = inWorld(tile.object, rest);
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
-            vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
+            vec3 right = particleAcross(normal + up * 1e-4), ahead = cross(normal, right);
             float r1 = hashUnit(g), r2 = hashUnit(g + 1u), r3 = hashUnit(g + 2u),
                   r4 = hashUnit(g + 3u);
             float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);

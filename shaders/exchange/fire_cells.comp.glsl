@@ -7,7 +7,4 @@ FW_READ(EXCHANGE_TILES) FW_READ_WRITE(SOURCES) FW_PUSH(ExchangePush)
 #define FW_PASS_FIRE_CELLS
 #include "shared/exchange_pass.h"
 
-void main() {
-    uint count = counters[kRowBurn + push.burnParity].runCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) sumTile(i);
-}
+void main() { FW_STRIDE(counters[kRowBurn + push.burnParity].runCount, sumTile) }

@@ -26,7 +26,7 @@ FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(RECEIVERS) FW_PU
 uint weightBits[32];
 uint countSources(uint slot, ivec3 middle) {
     uint count = 0u;
-    FW_EACH_SOURCE(weightBits[highestBit(weight)] += 1u; ++count;)
+    FW_EACH_SOURCE(weightBits[findMSB(weight)] += 1u; ++count;)
     return count;
 }
 

@@ -2,9 +2,8 @@
 // motion advects in two phases. Emission uses the volumetric fires' profile; absorption takes sun
 // and sky; refraction has a specular surface. Output is premultiplied: colour, and coverage.
 #include "lib/view.glsl"
-#include "shared/field_draw.h"
+#include "shared/field.h"
 #include "shared/volume.h"
-#include "shared/volume_draw.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(constant_id = 2) const uint kVariant = 0u;  // 0: only emits, 1: absorbs, 2: also refracts

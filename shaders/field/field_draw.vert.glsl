@@ -1,7 +1,7 @@
 // A particle field's body, generated from the vertex number: a billboard that turns about its up
 // axis, or a spheroid around which the field is wound, displaced by density if requested.
 #include "lib/view.glsl"
-#include "shared/field_draw.h"
+#include "shared/field.h"
 FW_READ(FIELD_DRAWS) FW_READ(FIELD_SHOWN)
 #include "lib/billboard.glsl"
 layout(location = 0) centroid out vec2 outPlace;          // over the field, [0, 1]

@@ -4,7 +4,6 @@
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 #include "shared/field.h"
-#include "shared/field_draw.h"
 FW_READ(FIELD_DRAWS) FW_READ(FIELD_CELLS) FW_WRITE(FIELD_SHOWN)
 
 const float kShadow = 0.004;  // of sunlight, absorbed per particle on its path

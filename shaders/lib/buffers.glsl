@@ -46,8 +46,7 @@
 #define FW_BUFFER_PENDING_QUADS(access) FW_BUFFER(PENDING, access, uvec4, pendingQuads)
 #define FW_BUFFER_SETTLED(access) FW_BUFFER(SETTLED, access, uint, settledRows)
 #define FW_BUFFER_TILE_STATE(access) FW_BUFFER(TILE_STATE, access, TileState, tileState)
-#define FW_BUFFER_LISTS(access) \
-    FW_BUFFER(LIST_A, access, uint, listA) FW_BUFFER(LIST_B, access, uint, listB)
+#define FW_BUFFER_FRONT_LISTS(access) FW_BUFFER(FRONT_LISTS, access, uint, frontLists)
 // World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its
 // row of `tiles`.
 #define FW_BUFFER_RUN(access) FW_BUFFER(RUN, access, uvec4, run)
@@ -68,20 +67,18 @@ const uint kRunBits = 3u;
 #define FW_BUFFER_WAKE_GROUPS(access) FW_BUFFER(WAKE_GROUPS, access, uvec2, wakeGroups)
 #define FW_BUFFER_OBJECT_COUNTERS(access) \
     FW_BUFFER(OBJECT_COUNTERS, access, ObjectCounters, objectCounters)
-#define FW_BUFFER_BURN_LISTS(access) \
-    FW_BUFFER(BURN_A, access, uint, burnA) FW_BUFFER(BURN_B, access, uint, burnB)
+#define FW_BUFFER_BURN_LISTS(access) FW_BUFFER(BURN_LISTS, access, uint, burnLists)
 #define FW_BUFFER_BURN_TILES(access) FW_BUFFER(BURN_TILES, access, BurnTile, burnTiles)
 #define FW_BUFFER_PREDICT(access) FW_BUFFER(PREDICT, access, uint, predict)
 #define FW_BUFFER_PREDICT_QUADS(access) FW_BUFFER(PREDICT, access, uvec4, predictQuads)
 #define FW_BUFFER_GRADIENT(access) FW_BUFFER(GRADIENT, access, uint, gradient)
-#define FW_BUFFER_PREDICT_LISTS(access) FW_BUFFER(PREDICT_LIST_A, access, uint, predictA) \
-    FW_BUFFER(PREDICT_LIST_B, access, uint, predictB)
+#define FW_BUFFER_PREDICT_LISTS(access) FW_BUFFER(PREDICT_LISTS, access, uint, predictLists)
 #define FW_BUFFER_PROBES(access) FW_BUFFER(PROBES, access, uvec2, probes)
 #define FW_BUFFER_ANSWERS(access) FW_BUFFER(ANSWERS, access, ProbeAnswer, answers)
 #define FW_BUFFER_HEAT(access) FW_BUFFER(HEAT, access, uvec2, heat)
 #define FW_BUFFER_HEAT_PAIRS(access) FW_BUFFER(HEAT, access, uvec4, heatPairs)  // two texels each
 #define FW_BUFFER_TILE_HEAT(access) FW_BUFFER(TILE_HEAT, access, TileHeat, tileHeat)
-#define FW_BUFFER_HOT_LISTS(access) FW_BUFFER(HOT_LISTS, access, uvec2, hotLists)
+#define FW_BUFFER_HOT_LISTS(access) FW_BUFFER(HOT_LISTS, access, uint, hotLists)
 #define FW_BUFFER_TILE_FIRE(access) FW_BUFFER(TILE_FIRE, access, float, tileFire)
 #define FW_BUFFER_SKIN_TEXELS(access) FW_BUFFER(SKIN_TEXELS, access, uvec4, skinTexels)
 

@@ -5,23 +5,21 @@
 // reduction will write. Needs `objectCounters` and `push`.
 #include "lib/burn_list.glsl"
 #include "lib/predict_list.glsl"
-#include "shared/burn_budget.h"
+#include "shared/exchange.h"
 
 const uint kRequested = 0xFFFFFFF0u;  // exceeds any world tile
 const uint kRequestFitsObject = 1u;       // + these: fits the object's limit, the world's
 const uint kRequestAllocated = 2u;
+uint markAt(uint worldTile) { return 2u * worldTile + (push.burnParity ^ 1u); }
 bool isRequestPass() { return (push.switches & kSwitchRequests) != 0u; }
 bool mayBurn(uint worldTile) {
     return (push.switches & kSwitchCapped) == 0u ||
            (tileState[worldTile].flag & kTileBurning) != 0u;
 }
 void requestToBurn(uint worldTile) {
-    uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kRequested)
-                                     : atomicExchange(burnA[worldTile], kRequested);
-    if (had == kRequested) return;
+    if (atomicExchange(burnLists[markAt(worldTile)], kRequested) == kRequested) return;
     uint slot = atomicAdd(counters[kRowBurn + (push.burnParity ^ 1u)].workCount, 1u);
-    if (push.predictParity == 0u) predictB[slot] = worldTile;
-    else predictA[slot] = worldTile;
+    predictLists[2u * slot + (push.predictParity ^ 1u)] = worldTile;
 }
 
 // end: end tick of the window in which a texel caught.

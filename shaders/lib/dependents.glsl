@@ -12,7 +12,7 @@ uvec2 rowMask(uint row, uint bits) {
 }
 // Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
 uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
-    // kFrontRingX and Y packed in words: `k` is not constant, and devices index arrays slowly.
+    // The ring (front.h) packed in words: `k` is not constant, and devices index arrays slowly.
     int x = tileX + int((0x901Au >> (2u * k)) & 3u) - 1;
     int y = tileY + int((0x01A9u >> (2u * k)) & 3u) - 1;
     return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);

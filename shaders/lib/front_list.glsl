@@ -1,10 +1,8 @@
 // The front list.
 #include "lib/lists.glsl"
-FW_READ_WRITE(LISTS)
+FW_READ_WRITE(FRONT_LISTS)
 void frontAppend(uint parity, uint row, uint worldTile) {
-    uint slot = listSlot(row, 64u);
-    if (parity == 0u) listA[slot] = worldTile;
-    else listB[slot] = worldTile;
+    frontLists[2u * listSlot(row, 64u) + parity] = worldTile;
 }
 // bits: set in addition to kTileListed.
 void touchTile(uint parity, uint row, uint worldTile, uint bits) {

@@ -2,12 +2,8 @@
 #include "lib/lists.glsl"
 FW_READ_WRITE(HOT_LISTS)
 const uint kHotPerGroup = 256u;  // of a group of `heat`
-void hotStore(uint parity, uint slot, uint worldTile) {
-    if (parity == 0u) hotLists[slot].x = worldTile;
-    else hotLists[slot].y = worldTile;
-}
 void hotAppend(uint parity, uint worldTile) {
-    hotStore(parity, listSlot(kRowHot + parity, kHotPerGroup), worldTile);
+    hotLists[2u * listSlot(kRowHot + parity, kHotPerGroup) + parity] = worldTile;
 }
 // Objects with heat only: the tile's temperature, water or flux changes from now on. It is updated
 // every step (kTileWarm), or at intervals.

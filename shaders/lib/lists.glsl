@@ -2,6 +2,10 @@
 // and the order does not matter. Needs `counters`, the lists of tiles also `tileState`.
 #ifndef FW_LIB_LISTS_GLSL
 #define FW_LIB_LISTS_GLSL
+// Access to lists that a pass may also read; FW_COHERENT: entries that its other threads write.
+#ifndef FW_LISTS
+#define FW_LISTS FW_READ_WRITE
+#endif
 
 // Makes the indirect groups `groups`X of `row` cover entry `slot`, `perGroup` entries each.
 #define FW_COVER(row, groups, slot, perGroup)                                                 \

@@ -1,5 +1,5 @@
 // Samples of the appearance textures at a place in metres. The includer declares `lookTextures`.
-#include "shared/integer.h"
+#include "shared/types.h"
 
 // Mip of a pattern of `tiles` per metre at `pixel` metres per pixel, rounded: a software device
 // would fetch two mips otherwise, for twice the time.

@@ -7,7 +7,7 @@ struct PredictRow {
 };
 PredictRow predictRowOf(uint slot, uint row) {
     PredictRow r;
-    r.worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
+    r.worldTile = predictLists[2u * slot + push.predictParity];
     r.flag = tileState[r.worldTile].flag;
     r.object = tileState[r.worldTile].object;
     r.bases = objectBases(r.object);

@@ -11,6 +11,15 @@ uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u);
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
 // Per object of the list: cut triangles of each material, then the first that exceeds the capacity.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
+// Appends (object, number) to a list that the device writes. header: its dispatch in the work buffer,
+// perGroup jobs a workgroup. Needs `work`.
+#define FW_ADD_JOB(header, list, perGroup, object, number)                              \
+    {                                                                                   \
+        uint job = atomicAdd(work[(header) + 3u], 1u);                                  \
+        atomicMax(work[header], min(job / (perGroup) + 1u, kMaxGroups));                \
+        work[(list) + 2u * job] = object;                                               \
+        work[(list) + 2u * job + 1u] = number;                                          \
+    }
 // Triangles up to the end of material m, and before it.
 uint materialEnd(uint object, uint m) {
     uvec4 low = refined[object].materialEnd0;

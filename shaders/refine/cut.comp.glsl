@@ -77,10 +77,7 @@ void find(uint object, uint triangle) {
         indices[to] = indices[to + 1u] = indices[to + 2u] = t.corner[0];
         return;
     }
-    uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
-    atomicMax(work[kRefineWorkCut], min(job + 1u, kMaxGroups));
-    work[push.cutJobs + 2u * job] = object;
-    work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
+    FW_ADD_JOB(kRefineWorkCut, push.cutJobs, 1u, object, triangle | (lost ? kLost : 0u))
 }
 
 uint roomBefore(uint object, uint m) {

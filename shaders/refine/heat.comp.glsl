@@ -2,15 +2,13 @@
 // list, ahead of the fire. One lane per tile. For fresh objects all burnt tiles are heated once,
 // one workgroup per object, so their holes are there in the first frame.
 #include "lib/refine.glsl"
-FW_READ(TILE_STATE) FW_READ(COUNTERS) FW_READ(LISTS) FW_READ(BURN_LISTS) FW_READ(REFINE_WORK)
+FW_READ(TILE_STATE) FW_READ(COUNTERS) FW_READ(FRONT_LISTS) FW_READ(BURN_LISTS) FW_READ(REFINE_WORK)
 FW_READ(REFINE_WORDS) FW_READ(PREDICT) FW_READ(GRADIENT) FW_READ_WRITE(REFINE_HEAT)
 #include "lib/object_quads.glsl"
 
 uint entry(uint i) {
-    if (push.parity == 0u) return listA[i];
-    if (push.parity == 1u) return listB[i];
-    if (push.parity == 2u) return burnA[i];
-    return burnB[i];
+    uint at = 2u * i + (push.parity & 1u);
+    return push.parity < 2u ? frontLists[at] : burnLists[at];
 }
 
 void warm(uint object, uint local, uint bits) {

@@ -131,10 +131,7 @@ void move(uint object, uint item) {
     if (s.level == before && now - s.lastHot >= kRefineCool) return;
     heat[at] |= kRefineMoving;
     if (item >= refined[object].edgeCount) return;
-    uint job = atomicAdd(work[kRefineWorkEdges + 3u], 1u);
-    atomicMax(work[kRefineWorkEdges], min(job / 64u + 1u, kMaxGroups));
-    work[edgeJobs() + 2u * job] = object;
-    work[edgeJobs() + 2u * job + 1u] = item;
+    FW_ADD_JOB(kRefineWorkEdges, edgeJobs(), 64u, object, item)
 }
 
 void pack(uint object, uint triangle) {
@@ -154,16 +151,10 @@ void pack(uint object, uint triangle) {
     uint moving =
         heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
     if (m >= 2u && (changed || (moving & kRefineMoving) != 0u)) {
-        uint job = atomicAdd(work[kRefineWorkPlace + 3u], 1u);
-        atomicMax(work[kRefineWorkPlace], min(job / 2u + 1u, kMaxGroups));
-        work[push.placeJobs + 2u * job] = object;
-        work[push.placeJobs + 2u * job + 1u] = triangle;
+        FW_ADD_JOB(kRefineWorkPlace, push.placeJobs, 2u, object, triangle)
         float level = items[own].level;
         if (topLevel(level) != m || levelMorphAge(level, m) >= 1.0) return;
-        job = atomicAdd(work[kRefineWorkMorph + 3u], 1u);
-        atomicMax(work[kRefineWorkMorph], min(job / 2u + 1u, kMaxGroups));
-        work[morphJobs() + 2u * job] = object;
-        work[morphJobs() + 2u * job + 1u] = triangle;
+        FW_ADD_JOB(kRefineWorkMorph, morphJobs(), 2u, object, triangle)
     }
 }
 

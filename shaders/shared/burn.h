@@ -16,8 +16,8 @@
 #define FW_BIND_TILES 7  // TileStatic as 2 x uvec4 (per mesh)
 #define FW_BIND_STATE 8  // uint[]: ignition tick or code (per object)
 #define FW_BIND_TILE_STATE 9  // TileState[] (per object)
-#define FW_BIND_LIST_A 10  // uint[]: front list, world tile ids (ping)
-#define FW_BIND_LIST_B 11  // uint[]: front list (pong)
+// Lists of world tiles: two (ping, pong), whose entries alternate.
+#define FW_BIND_FRONT_LISTS 10  // uint[]
 #define FW_BIND_RUN 12  // uvec4[]: due tiles, see lib/buffers.glsl
 #define FW_BIND_SCRATCH 13  // uint[]: gathered rows and rim texels, 96 words per due tile
 #define FW_BIND_MASKS 14  // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
@@ -25,13 +25,11 @@
 #define FW_BIND_EVENTS 16  // TexelEvent[]
 #define FW_BIND_WAKE_GROUPS 17  // uvec2[]: object slot, first tile of 64
 #define FW_BIND_OBJECT_COUNTERS 18  // ObjectCounters[]
-#define FW_BIND_BURN_A 19  // uint[]: tiles that flame (ping)
-#define FW_BIND_BURN_B 20  // uint[]: tiles that flame (pong)
+#define FW_BIND_BURN_LISTS 19  // uint[]: as FRONT_LISTS, tiles that flame
 #define FW_BIND_BURN_TILES 21  // BurnTile[]: what `reduce` says of each of them
 #define FW_BIND_PREDICT 22  // uint[]: predicted arrival ticks, or codes; cosmetic
 #define FW_BIND_GRADIENT 23  // uint[]: slope of the predicted arrival, and soot: lib/gradient.glsl
-#define FW_BIND_PREDICT_LIST_A 24
-#define FW_BIND_PREDICT_LIST_B 25
+#define FW_BIND_PREDICT_LISTS 24  // uint[]: as FRONT_LISTS
 #define FW_BIND_PROBES 26  // uvec2[]: object slot, texel
 #define FW_BIND_ANSWERS 27  // ProbeAnswer[]: one per probe
 #define FW_BIND_EXTENSION_TILES 28  // 768 bytes a tile of objects that an extension works on
@@ -44,7 +42,7 @@
 #define FW_BIND_HEAT 35  // uvec2[]: packed HeatTexel; objects with kObjectHeat
 #define FW_BIND_TILE_HEAT 36  // TileHeat[] (per object): heat that other objects send to a tile
 #define FW_BIND_HEAT_MATERIALS 37  // HeatMaterial[], 8 per object slot
-#define FW_BIND_HOT_LISTS 38  // uvec2[]: hot tiles, list A in x, list B in y
+#define FW_BIND_HOT_LISTS 38  // uint[]: as FRONT_LISTS, hot tiles
 #define FW_BIND_TILE_FIRE 39  // float[]: W of a tile's thick fuel in the last heat step
 #define FW_BIND_EXCHANGE_OBJECTS 40  // ExchangeObject[], by object slot: see exchange.h
 #define FW_BIND_EXCHANGE_TILES 41  // ExchangeTile[] (per mesh)
@@ -94,7 +92,7 @@
 #define FW_BIND_FIELD_MASKS 113  // uint[]: one byte per cell (per field)
 #define FW_BIND_FIELD_COUNTERS 114  // FieldCounters[], by field slot
 #define FW_BIND_FIELD_RUNS 115  // uvec2[]: field slot, step number; for steps also the unit << 16
-#define FW_BIND_FIELD_SHOWN 116  // uint[]: displayed cells (per field), see field_draw.h
+#define FW_BIND_FIELD_SHOWN 116  // uint[]: displayed cells (per field), see field.h
 #define FW_BIND_FIELD_DRAWS 117  // FieldDraw[]: visible fields
 #define FW_BIND_SPARKS 119  // SparkSource[]: sources of the frame, see spark.h
 #define FW_BIND_EMITTERS 120  // ParticleEmitter[]: fire emitters of the frame, see particle.h
@@ -234,7 +232,7 @@ struct BurnObject {   // offsets and constants of one object
     uint extensionBase;  // floats, into the tiles of an extension
     uint heatBase;    // into heat; with kObjectHeat
     uint skinBase;    // into the skin texels; with kObjectSkinned
-    uint zoneWind;    // wind of the zones at the object, wind.h; cosmetic
+    uint zoneWind;    // wind of the zones at the object, see unpackWind; cosmetic
 };
 FW_SIZE(BurnObject, 160)
 
@@ -405,6 +403,19 @@ FW_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
     if (kind == kEventDry) return t == kWet ? kNever : (t == kOutWet ? kOut : t);
     if (kind == kEventHeat || kind == kEventGate) return t;
     return isSource(t) ? kOut : t;  // extinguish
+}
+
+// ---- packed wind of the zones at an object: three times 10 bits, 1/4 m/s
+FW_CONST uint kWindBits = 10u;
+FW_CONST int kWindZero = 512;
+FW_CONST int kMaxWind = 511;
+
+// mm/s. A word of 0 is no wind.
+FW_FN ivec3 unpackWind(uint word) {
+    if (word == 0u) return ivec3(0, 0, 0);
+    return ivec3((int(word & 1023u) - kWindZero) * 250,
+                 (int((word >> 10u) & 1023u) - kWindZero) * 250,
+                 (int((word >> 20u) & 1023u) - kWindZero) * 250);
 }
 
 FW_SHARED_END

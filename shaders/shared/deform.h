@@ -5,7 +5,7 @@
 #ifndef FW_SHARED_DEFORM_H
 #define FW_SHARED_DEFORM_H
 #include "shared/burn.h"
-#include "shared/integer.h"
+#include "shared/types.h"
 
 #ifdef __cplusplus
 #include <glm/gtc/packing.hpp>

@@ -5,7 +5,7 @@
 #ifndef FW_SHARED_EXCHANGE_H
 #define FW_SHARED_EXCHANGE_H
 #include "shared/heat.h"
-#include "shared/wind.h"
+#include "shared/burn.h"
 
 FW_SHARED_BEGIN
 
@@ -49,7 +49,7 @@ struct ExchangeObject {  // object data of the exchange, latched at a step's sta
     ivec4 turn0;       // xyz: its rotation, Q12; w: low corner of its world box, mm
     ivec4 turn1;
     ivec4 turn2;
-    ivec4 high;        // xyz: the other corner; w: wind of the zones there, see wind.h
+    ivec4 high;        // xyz: the other corner; w: wind of the zones there, see unpackWind
     uvec4 power0;      // 1/16 W of a flaming texel, by material
     uvec4 power1;
     uint shift;
@@ -305,24 +305,14 @@ FW_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
     bool alongX = w.ahead.x * w.span.y < w.ahead.y * w.span.x;
     uint ahead = alongX ? w.ahead.x : w.ahead.y, span = alongX ? w.span.x : w.span.y;
     bool alongZ = w.ahead.z * span < ahead * w.span.z;
-    uint axis = alongZ ? 2u : (alongX ? 0u : 1u);
     w.passed = alongZ ? w.ahead.z : ahead;
     w.of = alongZ ? w.span.z : span;
-    int room = axis == 0u ? w.room.x : (axis == 1u ? w.room.y : w.room.z);
+    int room = alongZ ? w.room.z : (alongX ? w.room.x : w.room.y);
     w.within = room > 0 && w.passed < w.of;
-    if (axis == 0u) {
-        w.cell += uint(w.strides.x);
-        w.room.x -= 1;
-        w.ahead.x += side;
-    } else if (axis == 1u) {
-        w.cell += uint(w.strides.y);
-        w.room.y -= 1;
-        w.ahead.y += side;
-    } else {
-        w.cell += uint(w.strides.z);
-        w.room.z -= 1;
-        w.ahead.z += side;
-    }
+    w.cell += uint(alongZ ? w.strides.z : (alongX ? w.strides.x : w.strides.y));
+    ivec3 along = alongZ ? ivec3(0, 0, 1) : (alongX ? ivec3(1, 0, 0) : ivec3(0, 1, 0));
+    w.room -= along;
+    w.ahead += uvec3(along) * side;
 }
 
 // Objects at both ends, and the distance within which their own cells do not count.
@@ -365,16 +355,6 @@ FW_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, uint to
 
 // ---- flames
 
-FW_FN uint highestBit(uint x) {  // of x > 0
-#ifdef __cplusplus
-    uint bit = 0u;
-    while ((x >> bit) > 1u) ++bit;
-    return bit;
-#else
-    return uint(findMSB(x));
-#endif
-}
-
 // x^0.4, Q8; 0 for 0.
 FW_FN uint power04(uint x) {
     if (x == 0u) return 0u;
@@ -383,7 +363,7 @@ FW_FN uint power04(uint x) {
         x >>= 5u;
         fours += 2u;
     }
-    uint k = highestBit(x);
+    uint k = uint(findMSB(x));
     uint f = ((x << 15u) >> k) & 0x7FFFu;  // Q15
     uint rest = k % 5u;
     // 2^(0.4 rest), Q12
@@ -719,12 +699,8 @@ FW_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 wind) {
     uint axis = upAxis(up);
     ivec3 jitter = axis < 2u ? ivec3(0, jx, jz) : axis < 4u ? ivec3(jx, 0, jz) : ivec3(jx, jz, 0);
     ivec3 shift = carried + jitter;
-    int most = 28000;
-    shift = ivec3(shift.x > most ? most : (shift.x < -most ? -most : shift.x),
-                  shift.y > most ? most : (shift.y < -most ? -most : shift.y),
-                  shift.z > most ? most : (shift.z < -most ? -most : shift.z));
-    int h = int(loft);
-    e.landing = ivec3(s.place.x, s.place.y, s.place.z) + shift + ((up * h) >> 12);
+    shift = clamp(shift, ivec3(-28000), ivec3(28000));
+    e.landing = ivec3(s.place.x, s.place.y, s.place.z) + shift + ((up * int(loft)) >> 12);
     uint life = (thick + 1u) * (10u << 12u);  // it loses 0.1 mm a second
     uint whole = (thick + 1u) * 225u;         // J
     e.energy = seconds >= life ? 0u : divide(whole * ((life - seconds) >> 4u), life >> 4u);
@@ -749,5 +725,23 @@ FW_FN uint emberLights(uint energy, uint catches) {
     return ((65536u - minU(unlit, 65536u)) * minU(catches, 256u)) >> 8u;
 }
 
+// ---- burn budget: which of the tiles that request to burn may do so, see lib/burn_budget.glsl
+
+// Set beside kSwitchGoverned: the number of burning tiles is limited.
+FW_CONST uint kSwitchCapped = 0x20000u;
+// The pass only requests and lights nothing. In `burn_budget`: the front's due tiles request
+// through it.
+FW_CONST uint kSwitchRequests = 0x40000u;
+
+// Tiles that may still start to burn.
+FW_FN uint remainingTiles(uint burning, uint most) { return most - minU(burning, most); }
+// Allocation order: by hash, then by place, so the order of requests does not matter.
+FW_FN uint requestOrder(uint object, uint local, uint now) {
+    return mixed(mixed(now, object), local);
+}
+FW_FN bool requestPrecedes(FW_IN(uvec4) a, FW_IN(uvec4) b) {  // order, object, local tile
+    if (a.x != b.x) return a.x < b.x;
+    return a.y != b.y ? a.y < b.y : a.z < b.z;
+}
 FW_SHARED_END
 #endif

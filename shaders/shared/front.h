@@ -7,19 +7,12 @@
 #ifndef FW_SHARED_FRONT_H
 #define FW_SHARED_FRONT_H
 #include "shared/burn.h"
-#include "shared/integer.h"
+#include "shared/types.h"
 
 
 FW_SHARED_BEGIN
 
-// Ring order: counter-clockwise, odd = diagonal (as mesh::kRingX).
-#ifdef __cplusplus
-inline constexpr int kFrontRingX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
-inline constexpr int kFrontRingY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
-#else
-const int kFrontRingX[8] = int[8](1, 1, 0, -1, -1, -1, 0, 1);
-const int kFrontRingY[8] = int[8](0, 1, 1, 1, 0, -1, -1, -1);
-#endif
+// Ring order: counter-clockwise from +x, odd = diagonal (as mesh::kRingX).
 
 FW_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.3 h
 FW_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
@@ -60,11 +53,7 @@ FW_FN int dotInt(ivec3 a, ivec3 b) {
 // Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one; integers
 // correct it.
 FW_FN uint isqrtNear(uint n) {
-#ifdef __cplusplus
-    uint r = uint(int(std::sqrt(float(n))));
-#else
     uint r = uint(sqrt(float(n)));
-#endif
     uint square = r * r;
     uint rest = n - square;
     if (square > n) {
@@ -409,16 +398,9 @@ FW_FN uint dependentNeighbours(uint maskLow, uint maskHigh) {
     bool left = (all & 0x01010101u) != 0u;
     bool top = (maskHigh & 0xFF000000u) != 0u;   // row 7
     bool bottom = (maskLow & 0x000000FFu) != 0u; // row 0
-    uint n = 0u;
-    if (right) n |= 1u;
-    if ((maskHigh & 0x80000000u) != 0u) n |= 2u;
-    if (top) n |= 4u;
-    if ((maskHigh & 0x01000000u) != 0u) n |= 8u;
-    if (left) n |= 16u;
-    if ((maskLow & 0x00000001u) != 0u) n |= 32u;
-    if (bottom) n |= 64u;
-    if ((maskLow & 0x00000080u) != 0u) n |= 128u;
-    return n;
+    uint corners = ((maskHigh >> 31u) << 1u) | ((maskHigh >> 21u) & 8u) |
+                   ((maskLow << 5u) & 32u) | (maskLow & 0x80u);
+    return corners | (right ? 1u : 0u) | (top ? 4u : 0u) | (left ? 16u : 0u) | (bottom ? 64u : 0u);
 }
 
 FW_SHARED_END

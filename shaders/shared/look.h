@@ -3,7 +3,7 @@
 // clang-format off
 #ifndef FW_SHARED_LOOK_H
 #define FW_SHARED_LOOK_H
-#include "shared/integer.h"
+#include "shared/types.h"
 
 FW_SHARED_BEGIN
 

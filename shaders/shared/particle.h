@@ -3,7 +3,7 @@
 // clang-format off
 #ifndef FW_SHARED_PARTICLE_H
 #define FW_SHARED_PARTICLE_H
-#include "shared/integer.h"
+#include "shared/types.h"
 
 
 FW_SHARED_BEGIN
@@ -204,7 +204,7 @@ FW_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
     float turn = 6.2831853f * hashUnit(seed + 7u);
     float along = 2.0f * hashUnit(seed + 9u) - 1.0f;
     vec3 at = mix(vec3(e.place), vec3(e.from), back);
-    at += (r * cos(turn) + u * sin(turn)) * disc + vec3(e.half_) * along;
+    at += particleDisc(d, turn, disc) + vec3(e.half_) * along;
     float pulse = 1.0f + waves.z + 0.08f * particleGauss(seed + 3u);
     vec3 v = normalize(d + r * a + u * b) * (e.half_.w * pulse);
     Particle p;
@@ -229,10 +229,9 @@ FW_FN bool particleSticks(ParticleEmitter e, uint seed) { return hashUnit(seed +
 // Moves it to fuel that sticks at `at` on a surface with normal n, as a splash that has just
 // happened.
 FW_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n) {
-    vec3 r = particleAcross(n), u = cross(r, n), up = vec3(e.up);
-    float turn = 6.2831853f * hashUnit(seed + 62u);
-    float away = 0.25f * sqrt(hashUnit(seed + 63u));
-    p.placeAge = vec4(at + (r * cos(turn) + u * sin(turn)) * away + n * 0.08f, 0.2f * e.life.x);
+    vec3 r = particleAcross(n), up = vec3(e.up);
+    vec3 off = particleDisc(n, 6.2831853f * hashUnit(seed + 62u), 0.25f * sqrt(hashUnit(seed + 63u)));
+    p.placeAge = vec4(at + off + n * 0.08f, 0.2f * e.life.x);
     p.speedPath =
         vec4(n * 0.25f + (up - n * dot(up, n)) * 0.5f + r * (0.2f * particleGauss(seed + 64u)) +
                  up * (0.5f + 0.5f * hashUnit(seed + 65u)),

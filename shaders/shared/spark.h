@@ -260,9 +260,8 @@ FW_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3
 }
 // Offset on the source from its middle, m.
 FW_FN vec3 sparkOff(vec3 direction, float radius, vec3 half_, uint seed) {
-    vec3 r = particleAcross(direction), u = cross(r, direction);
     float disc = radius * sqrt(hashUnit(seed + 15u)), turn = 6.2831853f * hashUnit(seed + 16u);
-    return (r * cos(turn) + u * sin(turn)) * disc + half_ * (2.0f * hashUnit(seed + 17u) - 1.0f);
+    return particleDisc(direction, turn, disc) + half_ * (2.0f * hashUnit(seed + 17u) - 1.0f);
 }
 
 // K, and opacity, at `a` of its life.

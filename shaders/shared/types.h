@@ -3,6 +3,7 @@
 #ifndef FW_SHARED_TYPES_H
 #define FW_SHARED_TYPES_H
 #ifdef __cplusplus
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -35,6 +36,7 @@ using std::log2;
 using std::pow;
 using std::sin;
 using std::sqrt;
+inline int findMSB(uint x) { return int(std::bit_width(x)) - 1; }
 inline void umulExtended(uint a, uint b, uint& high, uint& low) {
     const std::uint64_t product = std::uint64_t(a) * b;
     high = uint(product >> 32);
@@ -65,4 +67,38 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 #define FW_UNROLL [[unroll]]
 #define FW_SIZE(T, bytes)
 #endif
+
+FW_SHARED_BEGIN
+FW_FN uint hash32(uint x) {
+    x ^= x >> 16u;
+    x *= 0x7feb352du;
+    x ^= x >> 15u;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// Hash of x in [0, 1).
+FW_FN float hashUnit(uint x) { return float(hash32(x) >> 8) * (1.0f / 16777216.0f); }
+FW_FN float saturate(float x) { return clamp(x, 0.0f, 1.0f); }
+
+// n / d, exact, d > 0. Software devices lack integer division: floats estimate from below (short by
+// 2 millionths and one, at most), integers correct.
+FW_FN uint divide(uint n, uint d) {
+#ifdef __cplusplus
+    return n / d;
+#else
+    float inverse = 0.999999 / float(d);
+    uint q = uint(float(n) * inverse);
+    uint r = n - q * d;
+    uint more = uint(float(r) * inverse);
+    q += more;
+    r -= more * d;
+    if (r >= d) {
+        q += 1u;
+        r -= d;
+    }
+    return r >= d ? q + 1u : q;
+#endif
+}
+FW_SHARED_END
 #endif

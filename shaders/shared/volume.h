@@ -5,6 +5,7 @@
 #ifndef FW_SHARED_VOLUME_H
 #define FW_SHARED_VOLUME_H
 #include "shared/black_body.h"
+#include "shared/volume_draw.h"
 #ifdef __cplusplus
 #include <bit>
 #endif
@@ -89,6 +90,12 @@ struct FlameRecord {      // one flame in one frame
     uint octaves;         // [1, 4]
 };
 FW_SIZE(FlameRecord, 256)
+
+struct VolumeFlame {   // as a draw reads it
+    FlameRecord record;
+    FlameNode nodes[kFlameNodes];
+};
+FW_SIZE(VolumeFlame, kVolumeFlameBytes)
 
 struct FlamePlace {       // a point in a curve's coordinates
     vec2 p;               // m off the axis, along side and cross(along, side)

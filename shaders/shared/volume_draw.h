@@ -1,5 +1,5 @@
 // Drawing of volumetric flames: push constants and sample positions of rays. Emission is in
-// volume.h; uniform data in volume_flame.h.
+// volume.h, and so is uniform data.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_DRAW_H
 #define FW_SHARED_VOLUME_DRAW_H
@@ -12,9 +12,9 @@ FW_CONST uint kFirePresets = 9u;         // first layers of the profile texture
 FW_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
 FW_CONST uint kProfileBytes = 32768u;    // per layer: 64 x 128 pairs of half floats
 FW_CONST uint kVolumeSlabs = 6u;  // slabs of a flame where the host's depth is only tested
+FW_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
 FW_CONST float kVolumeWhite = 1.5f;      // host units of soot of luminance 1
 
-FW_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
 
 // Push constants: screen rectangle of a flame, and its depth slabs. Ray at x, y of the view:
 // perspective: depth * (rayO + x rayX + y rayY); orthographic: rayO + x rayX + y rayY + depth *
@@ -230,8 +230,7 @@ FW_FN bool passesDither(uint x, uint y, float from, float to) {
 // neighbours differ by half a step: an upright tongue may be one march pixel wide and would appear
 // dashed otherwise. The phase is constant over frames, so a frame needs no history.
 FW_FN float marchSamplePhase(uint x, uint y) {
-    uint quarter = (x & 1u) | (2u * (y & 1u));
-    return 0.085f + 0.25f * float(quarter);
+    return 0.085f + 0.25f * float(marchQuarter(x, y));
 }
 
 // Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame
@@ -256,17 +255,18 @@ uint packSlabRange(vec2 reach, float through) {
     uvec2 ends = uvec2(clamp(reach, 0.0, 1.0) * 255.0 + 0.5);
     return ends.x | (ends.y << 8u) | (uint(clamp(through, 0.0, 1.0) * 65535.0 + 0.5) << 16u);
 }
+vec2 slabEnds(uint lies) { return vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0); }
 float slabTransmittance(uint lies) { return float(lies >> 16u) * (1.0 / 65535.0); }
 // Share of its light nearer than `cut` slabs beyond this slab's front.
 float slabShareNearer(uint lies, float cut) {
-    vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
+    vec2 ends = slabEnds(lies);
     return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
 }
 // Share of its light on the flame's side of the base, `cut` slabs beyond this slab's front; side:
 // VolumeDraw::base.w. A march pixel's own ray has no light beyond, so all counts until the base is
 // nearer than its first eighth.
 float slabShareBeside(uint lies, float cut, float side) {
-    vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
+    vec2 ends = slabEnds(lies);
     float end = side < 0.0 ? ends.y : ends.x;
     return clamp(side * (cut - end) / max(0.125 * (ends.y - ends.x), 5e-3), 0.0, 1.0);
 }

@@ -1,5 +1,5 @@
 // The view and the flame of a draw or march.
 #include "lib/view.glsl"
-#include "shared/volume_flame.h"
+#include "shared/volume.h"
 FW_UNIFORM(VOLUMES, VolumeFlame, flame)
 #define FW_FLAME_NODE(i) flame.nodes[i]

@@ -3,7 +3,7 @@
 #pragma once
 #include "core/memory.h"
 #include "gpu/vk/vk_backend.h"
-#include "shared/volume_flame.h"
+#include "shared/volume.h"
 #include "support/meshes.h"
 #include "support/vulkan_device.h"
 

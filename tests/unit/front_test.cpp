@@ -140,7 +140,7 @@ TEST(Front, SourcesAfterTheNextWakeChangeNothing) {
             const auto jitter = [&] { return int(random() % uint32_t(unit)) / 3 - unit / 6; };
             ring.tick[k] = now - random() % 800;
             ring.burn[k] = random() % 5 ? gpu::kNoneTexel : random() % 4000;
-            const int x = gpu::kFrontRingX[k], y = gpu::kFrontRingY[k];
+            const int x = mesh::kRingX[k], y = mesh::kRingY[k];
             ring.link[k] = {-x * unit + y * skew + jitter(), -y * unit + jitter(), jitter()};
         }
         const uint32_t counts = random() & 0xFF & random(), texel = random();

@@ -2,7 +2,7 @@
 // rounding.
 #include "components/wind_zone.h"
 #include "core/error.h"
-#include "shared/wind.h"
+#include "shared/burn.h"
 
 #include <gtest/gtest.h>
 

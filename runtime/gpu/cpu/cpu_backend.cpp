@@ -9,7 +9,7 @@
 #include "gpu/cpu/cpu_state.h"
 #include "gpu/extension.h"
 #include "mesh/exchange_tiles.h"
-#include "shared/burn_budget.h"
+#include "shared/exchange.h"
 
 #include <algorithm>
 #include <bit>

@@ -199,7 +199,7 @@ void gatherSources(ExchangePass& passes, uint32_t slot) noexcept {
             for (const FireSource& source : s.at(from).sources) {
                 const uint32_t weight = sourceWeight(source, middle);
                 if (weight < low || weight >= high) continue;
-                if (!takes) ++bits[highestBit(weight)];
+                if (!takes) ++bits[size_t(findMSB(weight))];
                 if (takes && s.warmCount < kSourcesPerReceiver)
                     s.warms[s.warmCount++] = {&source, entry >> 24};
                 ++count;

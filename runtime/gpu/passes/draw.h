@@ -4,7 +4,7 @@
 #include "flamewright/flamewright.h"
 #include "gpu/passes/pass.h"
 #include "lod/volumes.h"
-#include "shared/field_draw.h"
+#include "shared/field.h"
 #include "shared/half.h"
 #include "shared/heat.h"
 #include "shared/look.h"

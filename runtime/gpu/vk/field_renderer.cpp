@@ -3,7 +3,7 @@
 #include "gpu/passes/blend_order.h"
 #include "gpu/passes/field_units.h"
 #include "gpu/vk/frame_needs.h"
-#include "shared/field_draw.h"
+#include "shared/field.h"
 
 #include <cstring>
 

@@ -4,7 +4,7 @@
 #include "core/reserved.h"
 #include "gpu/passes/blend_order.h"
 #include "gpu/vk/backend_state.h"
-#include "shared/volume_flame.h"
+#include "shared/volume.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include "gpu/extension.h"
 #include "gpu/vk/backend_state.h"
-#include "shared/burn_budget.h"
+#include "shared/exchange.h"
 
 #include <algorithm>
 

@@ -5,7 +5,6 @@
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
-#include "shared/field_draw.h"
 #include "shared/flipbook.h"
 #include "shared/look.h"
 #include "shared/refine.h"
@@ -50,21 +49,18 @@ constexpr BufferRow kBuffers[] = {
      kComponentObjects},
     {FW_BIND_TILE_STATE, "tile state", kPoolObjectTiles, sizeof(TileState), 1024, true,
      kComponentObjects},
-    {FW_BIND_LIST_A, "front list A", kPoolObjectTiles, 4, 1024, true, kComponentLists},
-    {FW_BIND_LIST_B, "front list B", kPoolObjectTiles, 4, 1024, true, kComponentLists},
+    {FW_BIND_FRONT_LISTS, "front lists", kPoolObjectTiles, 8, 1024, true, kComponentLists},
     {FW_BIND_RUN, "run list", kPoolObjectTiles, 16, 1024, false, kComponentLists},
     {FW_BIND_SCRATCH, "scratch", kPoolObjectTiles, 6 * kTileTexels, 1024, false, kComponentLists},
     {FW_BIND_MASKS, "masks", kPoolObjectTiles, 16, 1024, false, kComponentLists},
-    {FW_BIND_BURN_A, "burn list A", kPoolObjectTiles, 4, 1024, true, kComponentLists},
-    {FW_BIND_BURN_B, "burn list B", kPoolObjectTiles, 4, 1024, true, kComponentLists},
+    {FW_BIND_BURN_LISTS, "burn lists", kPoolObjectTiles, 8, 1024, true, kComponentLists},
     {FW_BIND_BURN_TILES, "burn tiles", kPoolObjectTiles, sizeof(BurnTile), 1024, true,
      kComponentLists},
     {FW_BIND_PREDICT, "predicted arrivals", kPoolObjectTiles, 4 * kTileTexels, 1024, true,
      kComponentPredict},
     {FW_BIND_GRADIENT, "gradient", kPoolObjectTiles, 4 * kTileTexels, 1024, true,
      kComponentPredict},
-    {FW_BIND_PREDICT_LIST_A, "predict list A", kPoolObjectTiles, 4, 1024, true, kComponentPredict},
-    {FW_BIND_PREDICT_LIST_B, "predict list B", kPoolObjectTiles, 4, 1024, true, kComponentPredict},
+    {FW_BIND_PREDICT_LISTS, "predict lists", kPoolObjectTiles, 8, 1024, true, kComponentPredict},
     {FW_BIND_COUNTERS, "counters", kPoolIterations, sizeof(IterationCounters), kCounterRows, true,
      kComponentLists, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_EVENTS, "events", kPoolEvents, sizeof(TexelEvent), 4096, false, kComponentLists},

@@ -46,7 +46,7 @@ FrontTile runFrontTile(const FrontArrays& arrays, uint32_t tile, uint32_t window
     FW_ASSERT(arrays.tilesX > 0 && floorTick <= windowEnd, "%u tiles a row, ticks %u to %u",
               arrays.tilesX, floorTick, windowEnd);
     int offsets[8];
-    for (int k = 0; k < 8; ++k) offsets[k] = kFrontRingX[k] + kFrontRingY[k] * width;
+    for (int k = 0; k < 8; ++k) offsets[k] = kRingX[k] + kRingY[k] * width;
     const TileStatic& statics = arrays.tiles[tile];
     const uint64_t rimMask = statics.rimMask();
     const uint32_t corner =

@@ -54,7 +54,7 @@ void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, c
     const int x = int(tile % domain.tilesX), y = int(tile / domain.tilesX);
     for (uint32_t k = 0; k < 8; ++k) {
         if ((beside >> k & 1) == 0) continue;
-        const int otherX = x + gpu::kFrontRingX[k], otherY = y + gpu::kFrontRingY[k];
+        const int otherX = x + kRingX[k], otherY = y + kRingY[k];
         if (otherX < 0 || otherY < 0 || otherX >= int(domain.tilesX) ||
             otherY >= int(domain.tilesY))
             continue;
