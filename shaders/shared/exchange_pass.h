@@ -223,6 +223,26 @@ void lightContact(uint first) {
 }
 #endif
 
+#ifdef FW_PASS_PARTS
+// Fire of a burning tile, of those found by `reduce`, over gaps to other parts of its mesh. All
+// ignitions have the exchange's tick, so order does not matter.
+void lightParts(uint i) {
+    uint object = burnTiles[i].object, tile = burnTiles[i].tile;
+    if ((exchangeObjects[object].flags & kExchangeLive) == 0u) return;
+    uvec4 links = exchangeTileOf(object, tile).parts;
+    for (uint block = 0u; block < 4u; ++block) {
+        if (links[block] == kNoneTexel) continue;
+        uint from = texelOf(object, tile, partFrom(links[block], block));
+        uint to = links[block] % kPartTexels;
+        FW_IN(BurnMaterial) other = materialOf(object, to);
+        uint delay = partDelay(other, positionOf(object, to) - positionOf(object, from));
+        if ((other.flags & 1u) != 0u &&
+            partCrossed(stateOf(object, from), materialOf(object, from).flameTicks, delay, push.now))
+            lightTexel(object, to, push.now, 0u);
+    }
+}
+#endif
+
 #ifdef FW_PASS_EMBERS
 // Landing of embers. They are rare: each tests all objects, then the tiles of one.
 ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }

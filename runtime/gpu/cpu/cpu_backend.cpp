@@ -9,7 +9,6 @@
 #include "gpu/cpu/cpu_state.h"
 #include "gpu/extension.h"
 #include "mesh/exchange_tiles.h"
-#include "shared/exchange.h"
 
 #include <algorithm>
 #include <bit>
@@ -108,41 +107,6 @@ void CpuBackend::State::touchDependents(const CpuObject& object, uint32_t local,
         touch(base + ((switches & kSwitchWrongDependents) != 0 ? 0 : reader), kTileTouched);
 }
 
-// As events.comp.
-void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexcept {
-    CpuObject& object = at(event.object);
-    const CpuObject& from = at((event.kind >> kEventKindBits) - 1);
-    FW_ASSERT(event.texel < object.state.size(), "%u of %zu texels", event.texel,
-              object.state.size());
-    FW_ASSERT(event.tick < from.state.size(), "%u of %zu texels", event.tick, from.state.size());
-    const uint32_t before = object.state[event.texel];
-    uint32_t after = from.state[event.tick];
-    if (isRequestPass || !carries(after, before)) return;
-    const uint32_t worldTile = object.worldTileOf(event.texel);
-    if (!object.heat.empty()) {
-        const HeatMaterial& m = object.heatMaterialOf(event.texel);
-        const HeatTexel has = carriedTexel(unpackHeat(from.heat[event.tick]), m);
-        after = wetState(after, isBarrierByWater(has, m));
-        const uvec2 had = object.heat[event.texel], packed = packHeat(has);
-        if (packed == had && after == before) return;
-        // Fuel that burnt on the other mesh counts as this object's loss. Its room has already
-        // given the air for it.
-        const uint64_t lost =
-            uint64_t(int64_t(unpackHeat(had).fuel) - int64_t(has.fuel)) * m.energy;
-        addWide(object.counters.energyLow, object.counters.energyHigh, lost);
-        addWide(object.counters.drawnLow, object.counters.drawnHigh, lost);
-        object.heat[event.texel] = packed;
-        hot(worldTile);
-    }
-    if (after == before) return;
-    setState(object, worldTile, event.texel, after, now + kStepTicks);
-    if (isSource(after))
-        for (auto field :
-             {&ObjectCounters::litBy, &ObjectCounters::litTick, &ObjectCounters::stopTick})
-            object.counters.*field = std::max(object.counters.*field, from.counters.*field);
-    changedTexel(object, event.texel, now);
-}
-
 bool CpuBackend::State::setState(CpuObject& object, uint32_t worldTile, uint32_t texel,
                                  uint32_t after, uint32_t end) noexcept {
     FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
@@ -156,98 +120,76 @@ bool CpuBackend::State::setState(CpuObject& object, uint32_t worldTile, uint32_t
     return is && !was;
 }
 
-void CpuBackend::State::changedTexel(const CpuObject& object, uint32_t texel,
+void CpuBackend::State::changedTexel(CpuObject& object, uint32_t texel, bool burns,
                                      uint32_t now) noexcept {
+    if (!object.extended.empty()) {
+        extension()->cpu->event(object, texel, burns);
+        return;
+    }
     const uint32_t worldTile = object.worldTileOf(texel);
     tiles[worldTile].lastChange = now;
     touchDependents(object, object.localTileOf(worldTile), 1ull << object.domain->laneOf(texel));
 }
 
-// Number of events from `first` on with the same object and texel; "all texels" counts as one.
-size_t CpuBackend::State::runOf(std::span<const TexelEvent> events, size_t first) noexcept {
-    size_t end = first;
-    while (end < events.size() && events[end].object == events[first].object &&
-           events[end].texel == events[first].texel && eventKind(events[end].kind) != kEventGate &&
-           eventKind(events[end].kind) != kEventPlaybackSpan &&
-           eventKind(events[end].kind) != kEventCarry)
-        ++end;
-    return end - first;
-}
+// The bodies of the events pass, on the backend's state.
+struct EventPass : PassBody {
+    struct Events {
+        std::span<const TexelEvent> of;
+        const TexelEvent& operator[](uint32_t i) const noexcept {
+            FW_ASSERT(i < of.size(), "event %u of %zu", i, of.size());
+            return of[i];
+        }
+    } events;
+    struct {
+        uint32_t now, count, hotParity;
+    } push;
 
-// Returns the texel's state after a run of events; `heated`: its heat after them.
-uint32_t CpuBackend::State::afterEvents(const CpuObject& object, uint32_t texel,
-                                        std::span<const TexelEvent> batch,
-                                        std::span<const TexelEvent> run, uint32_t now,
-                                        HeatTexel& heated, bool& byFlame) const noexcept {
-    FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
-    if (!object.heat.empty()) return heatEvents(object, texel, batch, run, now, heated, byFlame);
-    uint32_t after = object.state[texel];
-    for (const TexelEvent& event : run)
-        after = applyEvent(after, playedKind(event.kind, object.counters.playsUntil, now),
-                           event.tick, now);
-    return after;
-}
+    [[nodiscard]] const HeatMaterial& heatMaterialOf(uint32_t slot, uint32_t texel) const noexcept {
+        return backend.at(slot).heatMaterialOf(texel);
+    }
+    struct TexelPlace {
+        uint32_t worldTile;
+    };
+    [[nodiscard]] TexelPlace placeOfTexel(uint32_t slot, uint32_t texel) const noexcept {
+        return {backend.at(slot).worldTileOf(texel)};
+    }
+    [[nodiscard]] bool isRequestPass() const noexcept { return backend.isRequestPass; }
+    [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
+        return backend.mayBurn(worldTile);
+    }
+    void requestToBurn(uint32_t worldTile) noexcept { backend.requestToBurn(worldTile); }
+    void nowBurns(uint32_t, uint32_t worldTile, uint32_t) noexcept { backend.burning(worldTile); }
+    void hotTouch(uint32_t, uint32_t worldTile) noexcept { backend.hot(worldTile); }
+    void litFrom(uint32_t slot, uint32_t by) noexcept { backend.litFrom(backend.at(slot), by); }
+    void addEnergy(uint32_t slot, uint32_t low, uint32_t high) noexcept {
+        ObjectCounters& counters = objectCounters[slot];
+        addWide(counters.energyLow, counters.energyHigh, uint64_t(high) << 32 | low);
+    }
+    void writeState(uint32_t slot, uint32_t texel, uint32_t worldTile, uint32_t,
+                    uint32_t after) noexcept {
+        backend.setState(backend.at(slot), worldTile, texel, after, push.now + kStepTicks);
+    }
+    void texelChanged(uint32_t slot, uint32_t texel, TexelPlace, bool burns) noexcept {
+        backend.changedTexel(backend.at(slot), texel, burns, push.now);
+    }
+#include "shared/event_pass.h"
+};
 
 void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
-    for (size_t i = 0; i < step.events.size();) {
-        const TexelEvent& first = step.events[i];
-        if (eventKind(first.kind) == kEventGate) break;  // gates end the batch
-        CpuObject& object = at(first.object);
-        if (eventKind(first.kind) == kEventCarry) {
-            carryTexel(first, step.now);
-            ++i;
-            continue;
-        }
-        if (eventKind(first.kind) == kEventPlaybackSpan) {
-            if (first.tick == kNever)
-                object.counters.playsUntil = kNever;
-            else
-                disturb(object, first.tick);
-            ++i;
-            continue;
-        }
-        const auto run = step.events.subspan(i, runOf(step.events, i));
-        i += run.size();
-        if (first.texel == kNoneTexel) {
-            applyToAll(object, run, step);
-            continue;
-        }
-        FW_ASSERT(first.texel < object.state.size(), "%u of %zu texels", first.texel,
-                  object.state.size());
-        const uint32_t before = object.state[first.texel];
-        HeatTexel heated{};
-        bool byFlame = false;  // lit by heat; an ignition of the host is not limited
-        const uint32_t now =
-            afterEvents(object, first.texel, step.events, run, step.now, heated, byFlame);
-        const uint32_t worldTile = object.worldTileOf(first.texel);
-        const bool lights = isSource(now) && !isSource(before);
-        if (isRequestPass) {
-            if (lights && byFlame)
-                requestToBurn(worldTile);
-            else if (lights)
-                burning(worldTile);
-            continue;
-        }
-        if (lights && byFlame && !mayBurn(worldTile)) continue;
-        if (!object.heat.empty()) {
-            const uvec2 had = object.heat[first.texel];
-            object.heat[first.texel] = packHeat(heated);
-            if (now != before || object.heat[first.texel] != had) hot(worldTile);
-        }
-        if (now == before) continue;
-        if (setState(object, worldTile, first.texel, now, step.now + kStepTicks))
-            litFrom(object, kLitByHand);
-        if (!object.extended.empty()) {
-            extension()->cpu->event(object, first.texel, isSource(now));
-            continue;
-        }
-        changedTexel(object, first.texel, step.now);
+    EventPass pass{{*this}, {step.events}, {step.now, uint32_t(step.events.size()), 0}};
+    for (uint32_t i = 0; i < pass.push.count; ++i) {
+        if (!pass.addressesAll(i))
+            pass.applyOne(i);
+        else if (i == 0 || !pass.addressesAll(i - 1) ||
+                 step.events[i - 1].object != step.events[i].object)
+            applyToAll(pass, i);
     }
 }
 
 // As for its texels one by one. Events of the host are not limited.
-void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent> run,
-                                   const StepPlan& step) noexcept {
+void CpuBackend::State::applyToAll(EventPass& pass, uint32_t first) noexcept {
+    CpuObject& object = at(pass.events[first].object);
+    const uint32_t stepNow = pass.push.now;
     const mesh::BurnDomain& domain = *object.domain;
     const bool heats = !object.heat.empty();
     // Texels at rest are alike: the next one becomes what the last one became.
@@ -265,10 +207,8 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
             const uint32_t before = object.state[texel];
             const uvec2 had = heats ? object.heat[texel] : uvec2(0);
             if (before != knownBefore || had != knownHad || (flags & 7) != knownMaterial) {
-                HeatTexel x{};
                 bool byFlame = false;
-                knownAfter = afterEvents(object, texel, step.events, run, step.now, x, byFlame);
-                knownHeat = heats ? packHeat(x) : uvec2(0);
+                knownAfter = pass.afterRun(first, texel, knownHeat, byFlame);
                 knownBefore = before;
                 knownHad = had;
                 knownMaterial = flags & 7;
@@ -284,7 +224,7 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
             }
             if (now == before) continue;
             changed |= 1ull << lane;
-            if (setState(object, worldTile, texel, now, step.now + kStepTicks))
+            if (setState(object, worldTile, texel, now, stepNow + kStepTicks))
                 litFrom(object, kLitByHand);
             if (!object.extended.empty()) extension()->cpu->event(object, texel, isSource(now));
         }
@@ -292,7 +232,7 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
         if (burns) burning(worldTile);
         if (changed == 0) continue;
         if (!object.extended.empty()) continue;
-        tiles[worldTile].lastChange = step.now;
+        tiles[worldTile].lastChange = stepNow;
         touchDependents(object, local, changed);
     }
 }

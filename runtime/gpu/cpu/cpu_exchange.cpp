@@ -5,7 +5,6 @@
 #include "gpu/cpu/cpu_state.h"
 #include "gpu/extension.h"
 #include "mesh/exchange_tiles.h"
-#include "mesh/part_links.h"
 
 #include <algorithm>
 #include <array>
@@ -71,10 +70,8 @@ namespace {
 
 const ExchangeObject kNoExchange{};
 
-// The bodies of the passes, on the backend's state. Members have the names that the text uses; a
-// slot without an object is one that takes no part.
-struct ExchangePass {
-    CpuBackend::State& backend;
+// The bodies of the passes, on the backend's state.
+struct ExchangePass : PassBody {
     ExchangePush push;
 
     struct ExchangeObjects {
@@ -84,14 +81,6 @@ struct ExchangePass {
             return object ? object->remote : kNoExchange;
         }
     } exchangeObjects{backend};
-    struct Counters {
-        const CpuBackend::State& backend;
-        ObjectCounters none{};
-        ObjectCounters& operator[](uint32_t slot) noexcept {
-            CpuObject* object = backend.find(slot);
-            return object ? object->counters : none;
-        }
-    } objectCounters{backend};
     struct Objects {
         const CpuBackend::State& backend;
         const BurnObject& operator[](uint32_t slot) const noexcept {
@@ -106,18 +95,6 @@ struct ExchangePass {
     std::pmr::vector<HeatOccluder>& occluders = backend.occluders;
     std::pmr::vector<uint32_t>& occlusion = backend.occlusionCells;
 
-    [[nodiscard]] uint32_t stateOf(uint32_t slot, uint32_t texel) const noexcept {
-        const CpuObject* object = backend.find(slot);
-        FW_ASSERT(!object || texel < object->state.size(), "texel %u", texel);
-        return object ? object->state[texel] : kInert;
-    }
-    [[nodiscard]] bool hasHeat(uint32_t slot) const noexcept {
-        return !backend.at(slot).heat.empty();
-    }
-    [[nodiscard]] uvec2 heatOf(uint32_t slot, uint32_t texel) const noexcept {
-        FW_ASSERT(texel < backend.at(slot).heat.size(), "texel %u", texel);
-        return backend.at(slot).heat[texel];
-    }
     [[nodiscard]] ivec3 positionOf(uint32_t slot, uint32_t texel) const noexcept {
         return backend.at(slot).domain->texels[texel].units();
     }
@@ -165,11 +142,6 @@ struct ExchangePass {
     bool lightTexel(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by) noexcept {
         return backend.light(slot, texel, tick, by, push.now);
     }
-    static void atomicAdd(uint32_t& sum, uint32_t more) noexcept { sum += more; }
-    static void atomicMax(uint32_t& most, uint32_t other) noexcept { most = std::max(most, other); }
-    static void atomicMin(uint32_t& least, uint32_t other) noexcept {
-        least = std::min(least, other);
-    }
     static int bitCount(uint32_t bits) noexcept { return std::popcount(bits); }
 
 #define FW_PASS_FIRE_CELLS
@@ -178,6 +150,7 @@ struct ExchangePass {
 #define FW_PASS_EXCHANGE
 #define FW_PASS_GIVES
 #define FW_PASS_CONTACTS
+#define FW_PASS_PARTS
 #define FW_PASS_EMBERS
 #define FW_PASS_EMBER_PATHS
 #define FW_PASS_EMBER_LANDINGS
@@ -235,7 +208,7 @@ void CpuBackend::State::eachEmber(Each&& each) noexcept {
 }
 
 void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexcept {
-    ExchangePass pass{*this, given};
+    ExchangePass pass{{*this}, given};
     pass.push.now = now;
     pass.push.count = uint32_t(objects.size());
     pass.push.occluders = uint32_t(occluders.size());
@@ -270,7 +243,7 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
         if ((rules.flags & kExchangeContact) != 0) {
             pass.push.count = uint32_t(links.size());
             for (uint32_t i = 0; i < links.size(); ++i) pass.lightContact(i);
-            parts(rules);
+            for (uint32_t i = 0; i < burnTiles.size(); ++i) pass.lightParts(i);
             pass.push.count = uint32_t(objects.size());
         }
         if ((rules.flags & kExchangeEmbers) != 0)
@@ -294,29 +267,8 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
     setState(object, worldTile, texel, tick, now);
     if (!object.heat.empty()) hot(worldTile);
     disturb(object, now);
-    if (!object.extended.empty()) {
-        extension()->cpu->event(object, texel, true);
-        return true;
-    }
-    changedTexel(object, texel, now);
+    changedTexel(object, texel, true, now);
     return true;
-}
-
-void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
-    for (const BurnTile& burning : burnTiles) {
-        const CpuObject& object = at(burning.object);
-        if (!object.exchanges() || object.domain->partLinks.empty()) continue;
-        const uvec4 words = remoteTileOf(object, burning.tile).parts;
-        for (uint32_t block = 0; block < 4; ++block) {
-            const uint32_t word = words[int(block)];
-            if (word == kNoneTexel) continue;
-            const mesh::PartLink link =
-                mesh::readPartLink(*object.domain, burning.tile, block, word);
-            const mesh::PartPath path = mesh::partPath(*object.domain, object.materials, link);
-            if (partCrossed(object.state[link.from], path.left->flameTicks, path.delay, rules.now))
-                light(burning.object, link.to, rules.now, 0, rules.now);
-        }
-    }
 }
 
 }  // namespace fw::gpu::cpu

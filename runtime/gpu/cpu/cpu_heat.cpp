@@ -28,40 +28,6 @@ void CpuBackend::State::listHot(uint32_t worldTile, uint32_t bits) noexcept {
 
 void CpuBackend::State::hot(uint32_t worldTile) noexcept { listHot(worldTile, kTileWarm); }
 
-bool CpuBackend::State::gatesLet(std::span<const TexelEvent> batch, uint32_t kind,
-                                 uint32_t now) const noexcept {
-    const TexelEvent* gate = batch.data() + (kind >> kEventKindBits) - 1;
-    for (;; ++gate) {
-        FW_ASSERT(gate >= batch.data() && gate < batch.data() + batch.size(), "gate %zd of %zu",
-                  gate - batch.data(), batch.size());
-        FW_ASSERT(eventKind(gate->kind) == kEventGate, "an event of kind %u is no gate",
-                  eventKind(gate->kind));
-        const CpuObject& object = at(gate->object);
-        if (object.heat.empty() ||
-            !gateOpens(gate->kind, gate->tick, unpackHeat(object.heat[gate->texel]),
-                       object.state[gate->texel], now))
-            return false;
-        if ((gate->kind & kGateMore) == 0) return true;
-    }
-}
-
-uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
-                                       std::span<const TexelEvent> batch,
-                                       std::span<const TexelEvent> events, uint32_t now,
-                                       HeatTexel& x, bool& byFlame) const noexcept {
-    const HeatMaterial& m = object.heatMaterialOf(texel);
-    uint32_t after = object.state[texel];
-    x = unpackHeat(object.heat[texel]);
-    for (const TexelEvent& event : events) {
-        if (eventHasGates(event.kind) && !gatesLet(batch, event.kind, now)) continue;
-        const uint32_t was = after;
-        after = heatEvent(x, m, after, playedKind(event.kind, object.counters.playsUntil, now),
-                          event.tick, now);
-        if (!isSource(was)) byFlame = isSource(after) && eventKind(event.kind) == kEventHeat;
-    }
-    return after;
-}
-
 uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
     const TileState& tile = tiles[worldTile];
     const uint32_t local = at(tile.object).localTileOf(worldTile);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <utility>
 
 namespace fw::gpu::cpu {
 
@@ -187,22 +188,13 @@ struct CpuBackend::State {
     void countLists() noexcept;  // for memoryRows, which any thread may call
     void applyEvents(const StepPlan& step) noexcept;
     void wake(const StepPlan& step) noexcept;
+    // cpu_heat.cpp
     void iterate(const StepPlan& step, uint32_t iteration) noexcept;
     void schedule(const StepPlan& step, uint32_t iteration) noexcept;
     void scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
-    bool gatesLet(std::span<const TexelEvent> batch, uint32_t kind, uint32_t now) const noexcept;
-    // cpu_heat.cpp. Returns the texel's state after the events.
-    uint32_t heatEvents(const CpuObject& object, uint32_t texel, std::span<const TexelEvent> batch,
-                        std::span<const TexelEvent> events, uint32_t now, HeatTexel& x,
-                        bool& byFlame) const noexcept;
-    static size_t runOf(std::span<const TexelEvent> events, size_t first) noexcept;
-    uint32_t afterEvents(const CpuObject& object, uint32_t texel, std::span<const TexelEvent> batch,
-                         std::span<const TexelEvent> run, uint32_t now, HeatTexel& heated,
-                         bool& byFlame) const noexcept;
-    void applyToAll(CpuObject& object, std::span<const TexelEvent> run,
-                    const StepPlan& step) noexcept;
+    void applyToAll(struct EventPass& pass, uint32_t first) noexcept;
     void airRooms(uint32_t now) noexcept;
     void requestHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
@@ -212,11 +204,11 @@ struct CpuBackend::State {
     [[nodiscard]] uint32_t heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
                                      const TileHeat& comes, uint32_t now, HeatTexel& x,
                                      uint32_t& units) const noexcept;
-    void carryTexel(const TexelEvent& event, uint32_t now) noexcept;
     // Writes a texel's state and counts it. True: the texel is a source now, and was none.
     bool setState(CpuObject& object, uint32_t worldTile, uint32_t texel, uint32_t after,
                   uint32_t end) noexcept;
-    void changedTexel(const CpuObject& object, uint32_t texel, uint32_t now) noexcept;
+    // True of `burns`: the texel is a source now.
+    void changedTexel(CpuObject& object, uint32_t texel, bool burns, uint32_t now) noexcept;
     void reduce(uint32_t now) noexcept;  // cpu_reduce.cpp
     [[nodiscard]] BurnTile burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
                                       float fire) const noexcept;
@@ -233,7 +225,6 @@ struct CpuBackend::State {
                   "tile %u of mesh %u", local, object.mesh);
         return exchangeTiles[object.mesh][local];
     }
-    void parts(const ExchangePush& rules) noexcept;
     template <class Each>
     void eachEmber(Each&& each) noexcept;
     bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
@@ -308,6 +299,40 @@ struct CpuBackend::State {
     std::array<uint32_t, kTimerCount> timed{};
     std::array<PassTime, kTimerCount> times{};
     uint32_t timesCount = 0;
+};
+
+// What bodies of passes (shared/exchange_pass.h, event_pass.h) use of the backend, by the names
+// that their text has. A slot without an object is one that takes no part.
+struct PassBody {
+    CpuBackend::State& backend;
+    struct Counters {
+        const CpuBackend::State& backend;
+        ObjectCounters none{};
+        ObjectCounters& operator[](uint32_t slot) noexcept {
+            CpuObject* object = backend.find(slot);
+            return object ? object->counters : none;
+        }
+    } objectCounters{backend};
+
+    [[nodiscard]] uint32_t stateOf(uint32_t slot, uint32_t texel) const noexcept {
+        const CpuObject* object = backend.find(slot);
+        FW_ASSERT(!object || texel < object->state.size(), "texel %u", texel);
+        return object ? object->state[texel] : kInert;
+    }
+    [[nodiscard]] bool hasHeat(uint32_t slot) const noexcept {
+        return !backend.at(slot).heat.empty();
+    }
+    [[nodiscard]] uvec2& heatOf(uint32_t slot, uint32_t texel) const noexcept {
+        FW_ASSERT(texel < backend.at(slot).heat.size(), "texel %u", texel);
+        return backend.at(slot).heat[texel];
+    }
+    static uint32_t atomicAdd(uint32_t& sum, uint32_t more) noexcept {
+        return std::exchange(sum, sum + more);
+    }
+    static void atomicMax(uint32_t& most, uint32_t other) noexcept { most = std::max(most, other); }
+    static void atomicMin(uint32_t& least, uint32_t other) noexcept {
+        least = std::min(least, other);
+    }
 };
 
 template <class Light>
