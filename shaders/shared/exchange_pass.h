@@ -13,6 +13,8 @@
 #define sourceCountOf(object) exchangeObjects[object].sourceCount
 #define sourceOf(object, cell) sources[exchangeObjects[object].sourceBase + (cell)]
 #define exchangeTileOf(object, local) exchangeTiles[objects[object].tileBase + (local)]
+#define firstSourceOf(object) exchangeObjects[object].sourceBase
+#define sourceAt(object, i) sources[i]
 #define burningTilesOfWorld() counters[kRowBurn + push.burnParity].runCount
 #define receiverCountOf(object) receivers[(object) * kReceiverWords + 1u]
 #define receiverEntryOf(object, i) receivers[(object) * kReceiverWords + 2u + (i)]
@@ -187,6 +189,65 @@ bool gives(uint from, uint to) {
            mayTransfer(exchangeObjects[from], hopsOf(objectCounters[from].litBy), push.hopsMost) &&
            mayReach(push.seed, from, to, objectCounters[from].litTick,
                     multiplyChances(push.chance, exchangeObjects[from].chance));
+}
+#endif
+
+#ifdef FW_PASS_RECEIVERS
+// Runs a statement for each source that may act on `slot`: number `source` of the object `from`,
+// with a neighbour's `entry` and a `weight`.
+#define FW_EACH_SOURCE(statement)                                                   \
+    for (uint n = 0u; n < exchangeObjects[slot].neighbourCount; ++n) {              \
+        uint entry = neighbourOf(slot, n), from = entry & 0xFFFFFFu;                \
+        if (entry >> 24u == 0u || !gives(from, slot)) continue;                     \
+        uint source = firstSourceOf(from);                                          \
+        for (uint end = source + sourceCountOf(from); source < end; ++source) {     \
+            uint weight = sourceWeight(sourceAt(from, source), middle);             \
+            if (weight == 0u) continue;                                             \
+            statement                                                               \
+        }                                                                           \
+    }
+
+// Lists the strongest sources that act on an object, found by halving. Returns their number.
+uint gatherSources(uint slot) {
+    ivec3 middle = boxMiddle(exchangeObjects[slot]);
+    uint strong = 0u, least = 0u;
+    uint weightBits[32];  // sources by the highest bit of their weight
+    FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;
+    FW_EACH_SOURCE(weightBits[findMSB(weight)] += 1u; ++strong;)
+    // Least power of two above which few enough sources lie.
+    while (strong > kSourcesPerReceiver) {
+        strong -= weightBits[least];
+        ++least;
+    }
+    // Those above it, then those of at least half of it, up to the capacity.
+    uint low = 1u << least, listed = 0u, weak = strong;
+    FW_EACH_SOURCE(if (weight >= low / 2u)
+                       listSource(slot, weight >= low ? listed++ : weak++, from, source, entry);)
+    return min(weak, kSourcesPerReceiver);
+}
+#endif
+
+#ifdef FW_PASS_LIGHT
+// Lights a texel by another object. True: it caught at this tick, by this flame or also by another
+// one. Each counts, so the order of threads does not matter: all ignitions of a texel in one
+// dispatch have the same tick.
+bool lightTexel(uint object, uint texel, uint tick, uint by) {
+    uint before = stateOf(object, texel);
+    bool shares = before == tick;
+    if (!shares && !isReceptive(before)) return false;
+    TexelPlace p = placeOfTexel(object, texel);
+    if (!mayCatch(objectCounters[object].held, tileState[p.worldTile].flag)) return false;
+    if (isRequestPass() && !mayBurn(p.worldTile)) requestToBurn(p.worldTile);
+    if (isRequestPass() || !mayBurn(p.worldTile)) return false;
+    if (!shares) shares = atomicCompSwap(stateOf(object, texel), before, tick) != before;
+    litFrom(object, by);
+    if (shares) return true;
+    atomicAdd(objectCounters[object].ignited, 1u);
+    nowBurns(object, p.worldTile, push.now);
+    if (hasHeat(object)) hotTouch(push.hotParity, p.worldTile);
+    atomicMin(objectCounters[object].playsUntil, push.now);
+    texelChanged(object, texel, p, true);
+    return true;
 }
 #endif
 

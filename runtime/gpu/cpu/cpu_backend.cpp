@@ -147,20 +147,6 @@ struct EventPass : PassBody {
     [[nodiscard]] const HeatMaterial& heatMaterialOf(uint32_t slot, uint32_t texel) const noexcept {
         return backend.at(slot).heatMaterialOf(texel);
     }
-    struct TexelPlace {
-        uint32_t worldTile;
-    };
-    [[nodiscard]] TexelPlace placeOfTexel(uint32_t slot, uint32_t texel) const noexcept {
-        return {backend.at(slot).worldTileOf(texel)};
-    }
-    [[nodiscard]] bool isRequestPass() const noexcept { return backend.isRequestPass; }
-    [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
-        return backend.mayBurn(worldTile);
-    }
-    void requestToBurn(uint32_t worldTile) noexcept { backend.requestToBurn(worldTile); }
-    void nowBurns(uint32_t, uint32_t worldTile, uint32_t) noexcept { backend.burning(worldTile); }
-    void hotTouch(uint32_t, uint32_t worldTile) noexcept { backend.hot(worldTile); }
-    void litFrom(uint32_t slot, uint32_t by) noexcept { backend.litFrom(backend.at(slot), by); }
     void addEnergy(uint32_t slot, uint32_t low, uint32_t high) noexcept {
         ObjectCounters& counters = objectCounters[slot];
         addWide(counters.energyLow, counters.energyHigh, uint64_t(high) << 32 | low);

@@ -125,6 +125,8 @@ struct ExchangePass : PassBody {
         FW_ASSERT(cell < sources.size(), "source %u of %zu", cell, sources.size());
         return sources[cell];
     }
+    static uint32_t firstSourceOf(uint32_t) noexcept { return 0; }
+    FireSource& sourceAt(uint32_t slot, uint32_t cell) noexcept { return sourceOf(slot, cell); }
     [[nodiscard]] uint32_t burningTilesOfWorld() const noexcept {
         return uint32_t(burnTiles.size());
     }
@@ -139,8 +141,13 @@ struct ExchangePass : PassBody {
     void hotList(uint32_t, uint32_t worldTile, uint32_t bits) noexcept {
         backend.listHot(worldTile, bits);
     }
-    bool lightTexel(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by) noexcept {
-        return backend.light(slot, texel, tick, by, push.now);
+    void listSource(uint32_t, uint32_t place, uint32_t from, uint32_t cell,
+                    uint32_t entry) noexcept {
+        if (place < kSourcesPerReceiver)
+            backend.warms[place] = {&sourceOf(from, cell), entry >> 24};
+    }
+    void texelChanged(uint32_t slot, uint32_t texel, TexelPlace, bool burns) noexcept {
+        backend.changedTexel(backend.at(slot), texel, burns, push.now);
     }
     static int bitCount(uint32_t bits) noexcept { return std::popcount(bits); }
 
@@ -149,6 +156,8 @@ struct ExchangePass : PassBody {
 #define FW_PASS_OCCLUSION
 #define FW_PASS_EXCHANGE
 #define FW_PASS_GIVES
+#define FW_PASS_RECEIVERS
+#define FW_PASS_LIGHT
 #define FW_PASS_CONTACTS
 #define FW_PASS_PARTS
 #define FW_PASS_EMBERS
@@ -156,40 +165,6 @@ struct ExchangePass : PassBody {
 #define FW_PASS_EMBER_LANDINGS
 #include "shared/exchange_pass.h"
 };
-
-// Lists the strongest sources that warm an object in State::warms.
-void gatherSources(ExchangePass& passes, uint32_t slot) noexcept {
-    CpuBackend::State& s = passes.backend;
-    const CpuObject& object = s.at(slot);
-    const ivec3 middle = boxMiddle(object.remote);
-    // Counts the sources of weight [low, high) by its highest bit, or lists them.
-    std::array<uint32_t, 32> bits{};
-    const auto pass = [&](uint32_t low, uint32_t high, bool takes) {
-        uint32_t count = 0;
-        for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
-            const uint32_t entry = passes.neighbourOf(slot, n), from = entry & 0xFFFFFFu;
-            if (entry >> 24 == 0 || !passes.gives(from, slot)) continue;
-            for (const FireSource& source : s.at(from).sources) {
-                const uint32_t weight = sourceWeight(source, middle);
-                if (weight < low || weight >= high) continue;
-                if (!takes) ++bits[size_t(findMSB(weight))];
-                if (takes && s.warmCount < kSourcesPerReceiver)
-                    s.warms[s.warmCount++] = {&source, entry >> 24};
-                ++count;
-            }
-        }
-        return count;
-    };
-    // The least power of two with at most kSourcesPerReceiver weights at or above it.
-    uint32_t least = 0;
-    for (uint32_t count = pass(1, kNoneTexel, false); count > kSourcesPerReceiver; ++least)
-        count -= bits[least];
-    FW_ASSERT(least < 32, "2^%u", least);
-    const uint32_t low = 1u << least;
-    s.warmCount = 0;
-    pass(low, kNoneTexel, true);
-    if (low > 1) pass(low / 2, low, true);
-}
 
 }  // namespace
 
@@ -230,7 +205,7 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
             if (!object || object->counters.until < now || object->heat.empty()) continue;
             ++receivers;
             object->counters.held |= kHeldWarm;
-            gatherSources(pass, slot);
+            warmCount = pass.gatherSources(slot);
             for (uint32_t local = turn; local < object->record.tileCount; local += kExchangeRounds)
                 pass.warmTile(slot, local);
         }
@@ -249,26 +224,6 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
         if ((rules.flags & kExchangeEmbers) != 0)
             eachEmber([&](const FireSource& source) { pass.landEmber(source); });
     });
-}
-
-bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by,
-                              uint32_t now) noexcept {
-    FW_ASSERT(isSource(tick) && tick <= now, "tick %u at %u", tick, now);
-    CpuObject& object = at(slot);
-    if (texel >= object.state.size()) return false;
-    const uint32_t before = object.state[texel];
-    if (before != tick && !isReceptive(before)) return false;
-    const uint32_t worldTile = object.worldTileOf(texel);
-    if (!mayCatch(object.counters.held, tiles[worldTile].flag)) return false;
-    if (isRequestPass && !mayBurn(worldTile)) requestToBurn(worldTile);
-    if (isRequestPass || !mayBurn(worldTile)) return false;
-    litFrom(object, by);
-    if (before == tick) return true;  // two flames lit it
-    setState(object, worldTile, texel, tick, now);
-    if (!object.heat.empty()) hot(worldTile);
-    disturb(object, now);
-    changedTexel(object, texel, true, now);
-    return true;
 }
 
 }  // namespace fw::gpu::cpu

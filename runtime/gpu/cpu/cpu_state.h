@@ -227,7 +227,6 @@ struct CpuBackend::State {
     }
     template <class Each>
     void eachEmber(Each&& each) noexcept;
-    bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
     void litFrom(CpuObject& object, uint32_t by) noexcept;
     // A baked burn that the object plays ends with the step or exchange that ends at `end`.
     static void disturb(CpuObject& object, uint32_t end) noexcept;
@@ -314,10 +313,11 @@ struct PassBody {
         }
     } objectCounters{backend};
 
-    [[nodiscard]] uint32_t stateOf(uint32_t slot, uint32_t texel) const noexcept {
-        const CpuObject* object = backend.find(slot);
+    uint32_t inert = kInert;  // state of a slot without an object
+    [[nodiscard]] uint32_t& stateOf(uint32_t slot, uint32_t texel) noexcept {
+        CpuObject* object = backend.find(slot);
         FW_ASSERT(!object || texel < object->state.size(), "texel %u", texel);
-        return object ? object->state[texel] : kInert;
+        return object ? object->state[texel] : inert;
     }
     [[nodiscard]] bool hasHeat(uint32_t slot) const noexcept {
         return !backend.at(slot).heat.empty();
@@ -325,6 +325,26 @@ struct PassBody {
     [[nodiscard]] uvec2& heatOf(uint32_t slot, uint32_t texel) const noexcept {
         FW_ASSERT(texel < backend.at(slot).heat.size(), "texel %u", texel);
         return backend.at(slot).heat[texel];
+    }
+    struct TexelPlace {
+        uint32_t worldTile;
+    };
+    [[nodiscard]] TexelPlace placeOfTexel(uint32_t slot, uint32_t texel) const noexcept {
+        return {backend.at(slot).worldTileOf(texel)};
+    }
+    [[nodiscard]] bool isRequestPass() const noexcept { return backend.isRequestPass; }
+    [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
+        return backend.mayBurn(worldTile);
+    }
+    void requestToBurn(uint32_t worldTile) noexcept { backend.requestToBurn(worldTile); }
+    void nowBurns(uint32_t slot, uint32_t worldTile, uint32_t end) noexcept {
+        atomicMax(objectCounters[slot].lastIgnition, end);
+        backend.burning(worldTile);
+    }
+    void hotTouch(uint32_t, uint32_t worldTile) noexcept { backend.hot(worldTile); }
+    void litFrom(uint32_t slot, uint32_t by) noexcept { backend.litFrom(backend.at(slot), by); }
+    static uint32_t atomicCompSwap(uint32_t& value, uint32_t expected, uint32_t wanted) noexcept {
+        return value == expected ? std::exchange(value, wanted) : value;
     }
     static uint32_t atomicAdd(uint32_t& sum, uint32_t more) noexcept {
         return std::exchange(sum, sum + more);
