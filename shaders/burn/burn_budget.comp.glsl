@@ -36,15 +36,13 @@ void main() {
     uint due = (push.switches & kSwitchRequests) != 0u ? counters[push.row].runCount : 0u;
     for (uint i = lane; i < due; i += 64u)
         if ((masks[i].z | masks[i].w) != 0u && !mayBurn(run[i].x)) requestToBurn(run[i].x);
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     uint count = counters[asks].workCount;
     uint room = remainingTiles(counters[kRowBurn + push.burnParity].listCount, push.maxTiles);
     // Tiles lit by the host meanwhile burn without a request.
     for (uint i = lane; i < count; i += 64u)
         if ((tileState[asked(i)].flag & kTileBurning) != 0u) setMark(asked(i), 0u);
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
         if (markOf(own.w) != kRequested) continue;
@@ -56,8 +54,7 @@ void main() {
         // Marks of finished lanes still count as requests.
         if (fits != 0u) setMark(own.w, kRequested + kRequestFitsObject);
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
         if (markOf(own.w) != kRequested + kRequestFitsObject) continue;
@@ -66,8 +63,7 @@ void main() {
             may = before(own, count, kRequested + kRequestFitsObject, false) < room ? 1u : 0u;
         if (may != 0u) setMark(own.w, kRequested + kRequestAllocated);
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint i = lane; i < count; i += 64u) {
         uint worldTile = asked(i);
         uint mark = markOf(worldTile);

@@ -70,13 +70,7 @@ void reduceTile(uint worldTile, uint parity) {
                 objects[object].originQuantum.w * vec3(position) / float(count);
     vec3 n = vec3(normal);
     // A tile of a skinned object moves with one of its texels.
-    bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved =
-        skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
-    if (skinned) {
-        rest = moved.place;
-        n = moved.normal;
-    }
+    moveWithSkin(object, anchor, rest, n);
     vec3 world = turnNormal(objects[object].worldRow0.xyz, objects[object].worldRow1.xyz,
                             objects[object].worldRow2.xyz, n);
     float size = length(world);

@@ -44,7 +44,8 @@ void schedule(uint worldTile, bool dense) {
         }
         waits = holdsTile(flag, counters[kRowBurn + push.burnParity].listCount, push.maxTiles,
                           objectCounters[tile.object].burningTiles,
-                          exchangeObjects[tile.object].flags, exchangeObjects[tile.object].maxTiles);
+                          exchangeObjects[tile.object].flags,
+                          exchangeObjects[tile.object].maxTiles);
     }
     if (waits) {
         if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);

@@ -35,20 +35,10 @@ uint clusterKey(ivec3 cell, float side) {
     h = hash32(h ^ uint(cell.y) * 19349663u);
     return max(hash32(h ^ uint(cell.z) * 83492791u), 1u);
 }
-uint clusterWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
+#define clusterOf(slot, word) clusters[kLightCellHeader + (slot) * kLightCellWords + (word)]
 
 const uint kClusterProbes = 24u;
 const float kFlameCover = 3.8;  // overlapping quads over a burning area
-const uint kNoCluster = 0xFFFFFFFFu;
-uint findCluster(uint key) {
-    for (uint i = 0u; i < kClusterProbes; ++i) {
-        uint slot = (key + i) % kLightCells;
-        uint there = clusters[clusterWord(slot, 0u)];
-        if (there == key) return slot;
-        if (there == 0u) return kNoCluster;
-    }
-    return kNoCluster;
-}
 
 // Flame height by Heskestad, m; a wide weak fire counts as many small ones.
 float flameLength(float watts, float area) {
@@ -57,9 +47,12 @@ float flameLength(float watts, float area) {
 }
 // W and m^2 that flame in the cluster of this key.
 vec2 clusterFire(uint key) {
-    uint slot = findCluster(key);
-    return slot == kNoCluster ? vec2(0.0) : vec2(float(clusters[clusterWord(slot, 1u)]),
-                                              float(clusters[clusterWord(slot, 5u)]) * 1e-5);
+    for (uint i = 0u; i < kClusterProbes; ++i) {
+        uint slot = (key + i) % kLightCells, there = clusterOf(slot, 0u);
+        if (there == key) return vec2(clusterOf(slot, 1u), float(clusterOf(slot, 5u)) * 1e-5);
+        if (there == 0u) break;
+    }
+    return vec2(0.0);
 }
 // Flame height from a fire and its surroundings: neighbours draw each other up.
 float flameLength(vec2 near, vec2 around) {

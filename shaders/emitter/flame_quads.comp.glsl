@@ -141,12 +141,7 @@ void main() {
             MaterialAppearance look = appearances[materials[foot.material].look];
             vec3 rest = restOf(tile.object, texels[object.texelBase + foot.texel]);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
-            bool skinned = (object.flags & kObjectSkinned) != 0u;
-            SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
-            if (skinned) {
-                rest = moved.place;
-                n = moved.normal;
-            }
+            moveWithSkin(tile.object, foot.texel, rest, n);
             vec3 place = inWorld(tile.object, rest);
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);

@@ -113,8 +113,7 @@ void sortMany(uint me, uint count, uint tiles) {
         uint from = kFlameOrder + (turn & 1u) * other, to = kFlameOrder + (~turn & 1u) * other;
         uint shift = kDepthBits + 4u * turn;
         for (uint d = 0u; d < kDigits; ++d) keys[d * kThreads + me] = 0u;
-        memoryBarrierBuffer();
-        barrier();
+        syncBuffers();
         for (uint j = 0u; j < each; ++j) {
             uint i = begin + j;
             uint digit = drawArgs[from + min(i, count - 1u)] >> shift & 15u;
@@ -146,15 +145,13 @@ void sortMany(uint me, uint count, uint tiles) {
             drawArgs[to + place] = key;
         }
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
 #define FW_DEPTH(i) (drawArgs[kFlameOrder + (i)] >> kDepthBits)
 #define FW_PLACE(i) placeOf(drawArgs[kFlameOrder + (i)] & 0xFFFFu, tiles)
     FW_ORDER_TIES(FW_DEPTH, FW_PLACE, kFlameOrder + other)
 #undef FW_DEPTH
 #undef FW_PLACE
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint i = me; i < count; i += kThreads)
         drawArgs[kFlameOrder + i] = drawArgs[kFlameOrder + other + i];
 }
@@ -169,8 +166,7 @@ void placeLights(uint me, uint hiding, uint lights) {
         return;
     }
     uint run = (hiding + kMarks - 1u) / kMarks, marks = (hiding + run - 1u) / run;
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     // keys: depths of the marks, farthest first, then the number of emissive quads before each mark
     // and at the end.
     for (uint g = me; g < marks; g += kThreads)
@@ -200,8 +196,7 @@ void placeLights(uint me, uint hiding, uint lights) {
         for (uint g = me; g <= marks; g += kThreads) keys[kMarks + g] = sums[own++];
         barrier();
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint i = me; i < hiding; i += kThreads)
         drawArgs[kFlameOrder + i + keys[kMarks + i / run]] = drawArgs[work + i];
     for (uint i = me; i < lights; i += kThreads) {
@@ -222,8 +217,7 @@ void main() {
         sortMany(me, hiding, tiles);
     if (lights > 0u) placeLights(me, hiding, lights);
     uint count = hiding + lights;
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     if (me == 0u) {
         drawArgs[0] = 6u * count;  // vertices
         drawArgs[1] = 1u;

@@ -28,20 +28,19 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     uint weight = max(uint(tile.normalPower.w + 0.5), 1u);  // W
     for (uint i = 0u; i < kClusterProbes; ++i) {
         uint slot = (key + i) % kLightCells;
-        uint there = atomicCompSwap(clusters[clusterWord(slot, 0u)], 0u, key);
+        uint there = atomicCompSwap(clusterOf(slot, 0u), 0u, key);
         if (there != 0u && there != key) continue;
-        atomicAdd(clusters[clusterWord(slot, 1u)], weight);
+        atomicAdd(clusterOf(slot, 1u), weight);
         if (level == 0u) {
             uvec3 offset = uvec3((at - vec3(cell)) * 64.0) * weight;
-            for (uint k = 0u; k < 3u; ++k)
-                atomicAdd(clusters[clusterWord(slot, 2u + k)], offset[k]);
+            for (uint k = 0u; k < 3u; ++k) atomicAdd(clusterOf(slot, 2u + k), offset[k]);
         }
-        atomicAdd(clusters[clusterWord(slot, 5u)], uint(tile.positionArea.w * 1e5) + 1u);
-        atomicMax(clusters[clusterWord(slot, 6u)], floatBitsToUint(side));
+        atomicAdd(clusterOf(slot, 5u), uint(tile.positionArea.w * 1e5) + 1u);
+        atomicMax(clusterOf(slot, 6u), floatBitsToUint(side));
         // All tiles of a cluster write the same values.
-        for (uint k = 0u; k < 3u; ++k) clusters[clusterWord(slot, 7u + k)] = uint(cell[k]);
-        clusters[clusterWord(slot, 10u)] = level;
-        atomicAdd(clusters[clusterWord(slot, 11u)], release);
+        for (uint k = 0u; k < 3u; ++k) clusterOf(slot, 7u + k) = uint(cell[k]);
+        clusterOf(slot, 10u) = level;
+        atomicAdd(clusterOf(slot, 11u), release);
         return;
     }
     if (level != 0u) return;
@@ -49,16 +48,14 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     atomicAdd(homelessRelease, release);
 }
 
-uint keyOf(uint slot) { return clusters[clusterWord(slot, 0u)]; }
+uint keyOf(uint slot) { return clusterOf(slot, 0u); }
 
 // Weighted mean position of a cluster, m, world.
 vec3 clusterPlace(uint slot) {
-    float side = uintBitsToFloat(clusters[clusterWord(slot, 6u)]);
-    vec3 within = vec3(clusters[clusterWord(slot, 2u)], clusters[clusterWord(slot, 3u)],
-                       clusters[clusterWord(slot, 4u)]) /
-                  (64.0 * float(clusters[clusterWord(slot, 1u)]));
-    ivec3 cell = ivec3(clusters[clusterWord(slot, 7u)], clusters[clusterWord(slot, 8u)],
-                       clusters[clusterWord(slot, 9u)]);
+    float side = uintBitsToFloat(clusterOf(slot, 6u));
+    vec3 within = vec3(clusterOf(slot, 2u), clusterOf(slot, 3u), clusterOf(slot, 4u)) /
+                  (64.0 * float(clusterOf(slot, 1u)));
+    ivec3 cell = ivec3(clusterOf(slot, 7u), clusterOf(slot, 8u), clusterOf(slot, 9u));
     return (vec3(cell) + within) * side;
 }
 
@@ -86,8 +83,7 @@ void main() {
         drawArgs[0] = 6u;
         for (uint i = 1u; i < kFlameOrder; ++i) drawArgs[i] = 0u;
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint i = me; i < count; i += 128u) {
         BurnTile tile = burnTiles[i];
         float fade = flameFade(tile);
@@ -98,18 +94,17 @@ void main() {
         addTo(tile, lightPlaceOf(tile, small), small, 0u, release);
         addTo(tile, flamePlaceOf(tile, large), large, 1u, release);
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     for (uint slot = me; slot < kLightCells; slot += 128u) {
-        if (keyOf(slot) == 0u || clusters[clusterWord(slot, 10u)] != 0u) continue;
+        if (keyOf(slot) == 0u || clusterOf(slot, 10u) != 0u) continue;
         uint at = atomicAdd(candidates, 1u);
         if (at >= kMost) {
-            atomicAdd(homelessPower, clusters[clusterWord(slot, 1u)]);
-            atomicAdd(homelessRelease, clusters[clusterWord(slot, 11u)]);
+            atomicAdd(homelessPower, clusterOf(slot, 1u));
+            atomicAdd(homelessRelease, clusterOf(slot, 11u));
             continue;
         }
         candidate[at] = slot;
-        score[at] = float(clusters[clusterWord(slot, 1u)]);
+        score[at] = float(clusterOf(slot, 1u));
     }
     barrier();
     uint competing = min(candidates, kMost);
@@ -119,8 +114,7 @@ void main() {
     for (uint light = 0u; light < found; ++light) {
         if (me == 0u) bestScore = bestKey = 0u;
         barrier();
-        for (uint i = me; i < competing; i += 128u)
-            atomicMax(bestScore, floatBitsToUint(score[i]));
+        for (uint i = me; i < competing; i += 128u) atomicMax(bestScore, floatBitsToUint(score[i]));
         barrier();
         for (uint i = me; i < competing; i += 128u)
             if (floatBitsToUint(score[i]) == bestScore) atomicMax(bestKey, keyOf(candidate[i]));
@@ -130,7 +124,7 @@ void main() {
                 bestAt = i;
         barrier();
         vec3 here = clusterPlace(candidate[bestAt]);
-        float side = uintBitsToFloat(clusters[clusterWord(candidate[bestAt], 6u)]);
+        float side = uintBitsToFloat(clusterOf(candidate[bestAt], 6u));
         for (uint i = me; i < competing; i += 128u) {
             if (i == bestAt) continue;
             // Reduces the score of neighbours, or one corner would get all lights.
@@ -163,8 +157,7 @@ void main() {
             next = d2 < leastNext && !last ? light : next;
             leastNext = last ? leastNext : min(leastNext, d2);
         }
-        uvec3 all = uvec3(clusters[clusterWord(slot, 1u)], clusters[clusterWord(slot, 11u)],
-                          clusters[clusterWord(slot, 5u)]);
+        uvec3 all = uvec3(clusterOf(slot, 1u), clusterOf(slot, 11u), clusterOf(slot, 5u));
         float share = nearest + 1u == found ? lastShare : 1.0;
         uvec3 own = share < 1.0 ? min(uvec3(vec3(all) * share), all) : all;
         give(slot, nearest, own);
@@ -204,9 +197,8 @@ void main() {
     // Requested quads, for the share of the available ones.
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
-        vec2 near = vec2(float(clusters[clusterWord(slot, 1u)]),
-                         float(clusters[clusterWord(slot, 5u)]) * 1e-5);
-        float large = clamp(4.0 * uintBitsToFloat(clusters[clusterWord(slot, 6u)]), 0.5, 4.0);
+        vec2 near = vec2(clusterOf(slot, 1u), float(clusterOf(slot, 5u)) * 1e-5);
+        float large = clamp(4.0 * uintBitsToFloat(clusterOf(slot, 6u)), 0.5, 4.0);
         vec2 around = clusterFire(clusterKey(ivec3(floor(clusterPlace(slot) / large)), large));
         float quads = flameQuads(near.y, flameHalfWidth(flameLength(near, around), 0.0));
         atomicAdd(clusters[0], uint(min(quads, 4096.0) * 16.0));

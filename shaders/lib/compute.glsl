@@ -7,6 +7,11 @@
 layout(local_size_x = FW_THREADS) in;
 #define FW_PUSH(type) layout(push_constant) uniform PushBlock { type push; };
 
+// A group's barrier, behind which all its threads see what each wrote into coherent buffers.
+void syncBuffers() {
+    memoryBarrierBuffer();
+    barrier();
+}
 // Inclusive sums of FW_THREADS words in shared memory, from sums[first] on, one per thread.
 #define FW_SUM_UP(sums, first, thread)                                           \
     for (uint reach = 1u; reach < FW_THREADS; reach <<= 1u) {                    \

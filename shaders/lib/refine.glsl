@@ -11,8 +11,8 @@ uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u);
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
 // Per object of the list: cut triangles of each material, then the first that exceeds the capacity.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
-// Appends (object, number) to a list that the device writes. header: its dispatch in the work buffer,
-// perGroup jobs a workgroup. Needs `work`.
+// Appends (object, number) to a list that the device writes. header: its dispatch in the work
+// buffer, perGroup jobs a workgroup. Needs `work`.
 #define FW_ADD_JOB(header, list, perGroup, object, number)                              \
     {                                                                                   \
         uint job = atomicAdd(work[(header) + 3u], 1u);                                  \

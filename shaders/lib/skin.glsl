@@ -2,20 +2,19 @@
 // without them read the first records.
 FW_READ(SKIN_TEXELS) FW_BUFFER(SHOWN, readonly, vec4, skinShown)
 
-struct SkinPlace {
-    vec3 place, normal;  // m, object space; of the triangle, Q14 as decodeNormal's
-};
-SkinPlace skinPlace(bool skinned, uint skinTexel, uint shownBase) {
-    uvec4 of = skinTexels[skinned ? skinTexel : 0u];
+// Moves the place (m, object space) and the normal (Q14, as decodeNormal's) of a texel at rest.
+void moveWithSkin(uint object, uint texel, inout vec3 place, inout vec3 normal) {
+    bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
+    uint base = objects[object].shownBase;
+    uvec4 of = skinTexels[skinned ? objects[object].skinBase + texel : 0u];
     vec2 weight = unpackUnorm2x16(of.w);
-    vec3 a = skinShown[skinned ? (shownBase + of.x) * 3u : 0u].xyz;
-    vec3 b = skinShown[skinned ? (shownBase + of.y) * 3u : 0u].xyz;
-    vec3 c = skinShown[skinned ? (shownBase + of.z) * 3u : 0u].xyz;
-    SkinPlace found;
-    found.place = a * weight.x + b * weight.y + c * (1.0 - weight.x - weight.y);
+    vec3 a = skinShown[skinned ? (base + of.x) * 3u : 0u].xyz;
+    vec3 b = skinShown[skinned ? (base + of.y) * 3u : 0u].xyz;
+    vec3 c = skinShown[skinned ? (base + of.z) * 3u : 0u].xyz;
     vec3 across = cross(b - a, c - a);
-    found.normal = across * (16384.0 * inversesqrt(max(dot(across, across), 1e-30)));
-    return found;
+    if (!skinned) return;
+    place = a * weight.x + b * weight.y + c * (1.0 - weight.x - weight.y);
+    normal = across * (16384.0 * inversesqrt(max(dot(across, across), 1e-30)));
 }
 
 // Position of a texel at rest, m, object space.

@@ -24,8 +24,7 @@ void scan(uint object, uint ordinal) {
         levels[base + i].y = start;
         start += refineCount(levels[base + i].x);
     }
-    memoryBarrierBuffer();
-    barrier();
+    syncBuffers();
     uint total = part[127];
     uint jobs = (total + 63u) / 64u;
     if (lane == 0u) {

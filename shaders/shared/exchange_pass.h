@@ -298,7 +298,8 @@ void lightParts(uint i) {
         FW_IN(BurnMaterial) other = materialOf(object, to);
         uint delay = partDelay(other, positionOf(object, to) - positionOf(object, from));
         if ((other.flags & 1u) != 0u &&
-            partCrossed(stateOf(object, from), materialOf(object, from).flameTicks, delay, push.now))
+            partCrossed(stateOf(object, from), materialOf(object, from).flameTicks, delay,
+                        push.now))
             lightTexel(object, to, push.now, 0u);
     }
 }

@@ -230,7 +230,8 @@ FW_FN bool particleSticks(ParticleEmitter e, uint seed) { return hashUnit(seed +
 // happened.
 FW_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n) {
     vec3 r = particleAcross(n), up = vec3(e.up);
-    vec3 off = particleDisc(n, 6.2831853f * hashUnit(seed + 62u), 0.25f * sqrt(hashUnit(seed + 63u)));
+    float turn = 6.2831853f * hashUnit(seed + 62u), away = 0.25f * sqrt(hashUnit(seed + 63u));
+    vec3 off = particleDisc(n, turn, away);
     p.placeAge = vec4(at + off + n * 0.08f, 0.2f * e.life.x);
     p.speedPath =
         vec4(n * 0.25f + (up - n * dot(up, n)) * 0.5f + r * (0.2f * particleGauss(seed + 64u)) +

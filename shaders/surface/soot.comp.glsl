@@ -27,12 +27,9 @@ void sootRow(uint i, uint row) {
         texel = texels[texelAt + anchor];
     }
     if ((texel.y & (kTexelReal << 16u)) == 0u) return;
-    vec3 middle = restOf(object, texel);
-    bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved =
-        skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
-    vec3 shift = skinned ? moved.place - middle : vec3(0.0);
-    middle = inWorld(object, middle + shift);
+    vec3 rest = restOf(object, texel), moved = rest, normal = vec3(0.0);
+    moveWithSkin(object, first + anchor, moved, normal);
+    vec3 shift = moved - rest, middle = inWorld(object, moved);
     float reach = 9.0 * sqrt(max(objects[object].tint.w, 0.0));  // m
     uint near = 0u;
     uint count = min(view.lightCount, kSurfaceLights);
