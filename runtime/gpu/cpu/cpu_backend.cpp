@@ -568,8 +568,7 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     if (step.heat) goneHot = 0;
     if (step.heat && !hotList.empty()) {
         Stopwatch watch(*this, kTimerHeat);
-        if (capped) requestHeat(step.now), allocateBurnBudget(most, step.now);
-        heatStep(step.now);
+        requestThenBurn(most, step.now, [&] { heatStep(step.now); });
     }
     goneListed = 0;
     if (!list.empty() || (switches & kSwitchDense) != 0)

@@ -55,6 +55,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     const mesh::TileTexels texels = domain.texelsOf(local);
     const TileHeat comes = tileHeat[worldTile];
     const bool held = !mayBurn(worldTile);
+    if (isRequestPass && !held) return;
     const uint32_t ambient = object.heatMaterials[0].ambient;
     uint64_t energy = 0, changed = 0;
     uint32_t lit = 0, gone = 0, left = workOfFlux(comes.flux);
@@ -74,8 +75,10 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         const uint32_t after = heatTexel(object, texel, work, comes, now, x, units);
         if (held && isSource(after) && !isSource(before)) {  // unchanged, and due again
             left |= kWorkAlways;
+            if (isRequestPass) requestToBurn(worldTile);
             continue;
         }
+        if (isRequestPass) continue;
         energy += uint64_t(units) * object.heatMaterials[kind & 7].energy;
         watts += float(units) * object.heatMaterials[kind & 7].watts;
         object.heat[texel] = packHeat(x);
@@ -86,6 +89,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         lit += isSource(after) && !isSource(before) ? 1 : 0;
         gone += isSource(before) && !isSource(after) ? 1 : 0;
     }
+    if (isRequestPass) return;
     if (left != 0) {
         const bool warm = (left & kWorkAlways) != 0;
         tile.flag = warm ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
@@ -136,33 +140,6 @@ void CpuBackend::State::airRooms(uint32_t now) noexcept {
     }
 }
 
-// Which tiles would catch in this heat step.
-void CpuBackend::State::requestHeat(uint32_t now) noexcept {
-    for (uint32_t worldTile : hotList) {
-        const TileState& tile = tiles[worldTile];
-        const CpuObject& object = at(tile.object);
-        const mesh::BurnDomain& domain = *object.domain;
-        const TileHeat comes = tileHeat[worldTile];
-        const uint32_t turn = heatTurnOf(worldTile, now);
-        if (turn == 0 || mayBurn(worldTile)) continue;
-        const mesh::TileTexels texels = domain.texelsOf(object.localTileOf(worldTile));
-        bool lights = false;
-        for (uint32_t lane = 0; lane < mesh::kTileLanes && !lights; ++lane) {
-            const uint32_t texel = texels[lane];
-            const uint32_t before = object.state[texel];
-            if ((domain.texels[texel].materialFlags & kTexelReal) == 0 || isSource(before))
-                continue;
-            HeatTexel x = unpackHeat(object.heat[texel]);
-            const uint32_t ambient = object.heatMaterials[0].ambient;
-            const uint32_t work = workThisStep(workOfTexel(x, before, comes.flux, ambient), turn);
-            if ((work & turn) == 0) continue;
-            uint32_t units = 0;
-            lights = isSource(heatTexel(object, texel, work, comes, now, x, units));
-        }
-        if (lights) requestToBurn(worldTile);
-    }
-}
-
 void CpuBackend::State::heatStep(uint32_t now) noexcept {
     if ((switches & kSwitchShuffle) != 0) shuffle(hotList);
     hotOut.clear();
@@ -173,7 +150,7 @@ void CpuBackend::State::heatStep(uint32_t now) noexcept {
         else
             heatTile(worldTile, turn, now);
     }
-    hotList.swap(hotOut);
+    if (!isRequestPass) hotList.swap(hotOut);
 }
 
 }  // namespace fw::gpu::cpu

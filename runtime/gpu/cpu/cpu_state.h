@@ -196,7 +196,6 @@ struct CpuBackend::State {
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
     void applyToAll(struct EventPass& pass, uint32_t first) noexcept;
     void airRooms(uint32_t now) noexcept;
-    void requestHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
     [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
     void heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept;
