@@ -42,9 +42,15 @@ function(flamewright_shaders target function)
         set(header ${generated}/${name}.inc)
         # What every shader begins with. Its own text is included, so that errors name its lines.
         set(begin ${generated}/${name}.glsl)
+        # FW_VARYING declares what passes from the vertex to the fragment stage, for both.
+        set(varying in)
+        if(stage STREQUAL vert)
+            set(varying out)
+        endif()
         file(CONFIGURE OUTPUT ${begin} CONTENT
 "#version 450
 #extension GL_GOOGLE_include_directive : require
+#define FW_VARYING ${varying}
 #include \"${path}.glsl\"
 ")
         add_custom_command(

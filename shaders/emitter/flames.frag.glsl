@@ -2,43 +2,33 @@
 // height (zero-mean noise that scrolls upwards and narrows with height); soot glows in thin sheets
 // where the noise is zero. Fireball: noise advected by two vortices, eroded with age. Output is
 // premultiplied: colour, and coverage.
-#include "lib/view.glsl"
+#include "emitter/flames.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
-layout(location = 0) centroid in vec2 inPlace;
-layout(location = 1) flat in vec4 inState;
-layout(location = 2) flat in uint inKind;
-layout(location = 3) flat in float inWidth;
-layout(location = 4) flat in vec2 inSun;  // light direction in the quad's plane
 
 #ifdef FW_FLIPBOOKS
-#include "shared/flipbook.h"
 // If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
 // for every quad.
 layout(constant_id = 2) const uint kOnlyFlipbooks = 0u;
 layout(set = 1, binding = 0) uniform sampler2D flipbookTexture;
-layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of the frame after
-layout(location = 6) flat in vec4 inMotions;  // the same of their motion
-layout(location = 7) flat in vec4 inSizes;    // texels of a frame, of its motion
-layout(location = 8) flat in vec2 inBetween;  // blend weight, largest motion
 
 // Reads up to half a texel beyond a border, into the empty texel between frames.
 vec4 flipbookTexel(vec2 at, vec2 uv) {
-    vec2 p = clamp(uv * inSizes.xy, vec2(-0.5), inSizes.xy + 0.5);
+    vec2 p = clamp(uv * vSizes.xy, vec2(-0.5), vSizes.xy + 0.5);
     return textureLod(flipbookTexture, (at + p) / vec2(textureSize(flipbookTexture, 0)), 0.0);
 }
 vec2 flipbookMotionAt(vec2 at, vec2 uv) {
-    vec2 p = clamp(uv * inSizes.zw, vec2(0.5), inSizes.zw - 0.5);
+    vec2 p = clamp(uv * vSizes.zw, vec2(0.5), vSizes.zw - 0.5);
     vec2 size = vec2(textureSize(flipbookTexture, 0));
-    return decodeFlipbookMotion(textureLod(flipbookTexture, (at + p) / size, 0.0).rg, inBetween.y);
+    return decodeFlipbookMotion(textureLod(flipbookTexture, (at + p) / size, 0.0).rg, vBetween.y);
 }
 vec4 sampleFlipbook(vec2 uv) {
-    vec2 before = flipbookUvBefore(uv, flipbookMotionAt(inMotions.xy, uv), inBetween.x);
-    vec2 after = flipbookUvAfter(uv, flipbookMotionAt(inMotions.zw, uv), inBetween.x);
-    return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after),
-                             inBetween.x);
+    vec2 before = flipbookUvBefore(uv, flipbookMotionAt(vMotions.xy, uv), vBetween.x);
+    vec2 after = flipbookUvAfter(uv, flipbookMotionAt(vMotions.zw, uv), vBetween.x);
+    return mixFlipbookTexels(flipbookTexel(vFrames.xy, before), flipbookTexel(vFrames.zw, after),
+                             vBetween.x);
 }
 // K between the coldest and the hottest texel, around the quad's temperature.
 const float kFlipbookSpan = 600.0;
@@ -90,10 +80,10 @@ vec2 rotate(vec2 p, vec2 by) {
 }
 
 void main() {
-    uint what = inKind & 3u, named = (inKind >> kQuadSeed & 0xFFFFu) << 1u | (inKind & 1u);
+    uint what = vKind & 3u, named = (vKind >> kQuadSeed & 0xFFFFu) << 1u | (vKind & 1u);
     bool tongue = what == kQuadTongue, smoke = what == kQuadSmoke, spark = what == kQuadSpark;
-    float opacity = inState.x, phase = inState.y, aspect = inState.w;
-    float x = inPlace.x, y = inPlace.y;
+    float opacity = vState.x, phase = vState.y, aspect = vState.w;
+    float x = vPlace.x, y = vPlace.y;
     vec2 seed = vec2(hash(uvec3(named, 1u, 5u)), hash(uvec3(named, 2u, 5u)));
     vec2 c = vec2(x, 2.0 * y - 1.0);
     float r = length(c);
@@ -119,7 +109,7 @@ void main() {
     vec4 n1 = vec4(0.5), n2 = vec4(0.5);
     // Smoke also samples one step towards its light; differences between pixels would show texel
     // grain.
-    vec2 ahead = kSunStep * inSun, scroll = vec2(0.0, slow * phase);
+    vec2 ahead = kSunStep * vSun, scroll = vec2(0.0, slow * phase);
     float aheadNoise = 0.5;
     if (kOnlyFlipbooks == 0u) {
         n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
@@ -155,7 +145,7 @@ void main() {
                 (1.0 - smoothstep(0.90, 1.0, y)) * (1.0 - smoothstep(0.60, 0.98, abs(x)));
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
-        kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
+        kelvin = vState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
                  110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
         hides = 0.75;
     } else {
@@ -167,24 +157,24 @@ void main() {
         soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) *
                (1.0 - smoothstep(0.62, 0.97, r)) *
                mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase) * (1.0 - 0.6 * late));
-        kelvin = inState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
+        kelvin = vState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
                  260.0 * (n2.g - 0.45) - 150.0 * (phase - 0.35);
         soot *= sootLeft(kelvin);
         hides = sootHides(kelvin);
     }
 #ifdef FW_FLIPBOOKS
-    bool byFlipbook = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
-    vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
+    bool byFlipbook = kOnlyFlipbooks != 0u || (vKind >> kQuadFlipbookShift & 0xFFu) != 0u;
+    vec2 uv = vec2(0.5 * ((vKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
     vec4 frame = sampleFlipbook(uv);
     if (byFlipbook) {
         soot = frame.y;
-        kelvin = inState.z + kFlipbookSpan * (frame.x - 0.5);
+        kelvin = vState.z + kFlipbookSpan * (frame.x - 0.5);
         white = kFlameWhite;
         soot *= sootLeft(kelvin);
         hides = kFlipbookHides * sootHides(kelvin) * frame.z / max(frame.y, 1e-4);
     }
 #endif
-    vec3 glow = sootRadiance(spark ? inState.z : kelvin);
+    vec3 glow = sootRadiance(spark ? vState.z : kelvin);
     color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Smoke: separate billows; thin smoke is eroded more.
@@ -198,8 +188,8 @@ void main() {
 #ifdef FW_FLIPBOOKS
         if (byFlipbook) {
             alpha = frame.z * opacity;
-            vec2 sun = vec2((inKind >> kQuadSeed & 1u) != 0u ? -inSun.x : inSun.x, inSun.y);
-            billow = 1.6 * (frame.w - flipbookTexel(inFrames.xy, uv + 0.09 * sun).w);
+            vec2 sun = vec2((vKind >> kQuadSeed & 1u) != 0u ? -vSun.x : vSun.x, vSun.y);
+            billow = 1.6 * (frame.w - flipbookTexel(vFrames.xy, uv + 0.09 * sun).w);
         }
 #endif
         // Crests catch sun and sky, hollows the fire below.
@@ -207,13 +197,13 @@ void main() {
         vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.3 + 0.6 * crest) * 0.9 +
                    view.sunColor.rgb * (0.45 * crest * crest);
         vec3 fire = vec3(1.0, 0.38, 0.10) *
-                    (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
+                    (0.35 * view.sunColor.w * vState.z * vState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
 #ifdef FW_FLIPBOOKS
-        if ((inKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
+        if ((vKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
 #endif
         // Compressed: the true radiance falls a thousandfold during the flight.
         color =
@@ -224,12 +214,12 @@ void main() {
     // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad,
     // so thin objects do not cut it.
     float gap = gapToScene();
-    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap)
-                       : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
+    float soft = smoke ? smoothstep(0.0, 0.9 * vWidth, gap)
+                       : smoothstep(-0.35 * vWidth, 0.35 * vWidth, gap);
     color *= soft;
     alpha *= soft;
 #endif
-    bool emits = spark || (inKind & kQuadEmits) != 0u;  // and hides nothing
+    bool emits = spark || (vKind & kQuadEmits) != 0u;  // and hides nothing
     if (alpha < 0.002 && !emits) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {

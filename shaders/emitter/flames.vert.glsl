@@ -1,7 +1,7 @@
 // A quad of flame, smoke, fire or spark: stands along its axis and turns about it towards the
 // camera (see billboard). All quads are one draw of six vertices each: some devices pay per
 // instance.
-#include "lib/view.glsl"
+#include "emitter/flames.glsl"
 FW_READ(FLAMES) FW_READ(DRAW_ARGS)
 #ifdef FW_FLIPBOOKS
 #include "emitter/flipbooks.glsl"
@@ -10,17 +10,8 @@ FW_READ(FLAMES) FW_READ(DRAW_ARGS)
 
 layout(constant_id = 3) const uint kPart = kPartAll;
 
-layout(location = 0) centroid out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
-layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length over half width
-layout(location = 2) flat out uint outKind;
-layout(location = 3) flat out float outWidth;  // m, half width
-layout(location = 4) flat out vec2 outSun;     // light direction in the quad's plane
 
 #ifdef FW_FLIPBOOKS
-layout(location = 5) flat out vec4 outFrames;   // texel of the frame before and of the frame after
-layout(location = 6) flat out vec4 outMotions;  // the same of their motion
-layout(location = 7) flat out vec4 outSizes;    // texels of a frame, of its motion
-layout(location = 8) flat out vec2 outBetween;  // blend weight, largest motion
 
 FlipbookRecord flipbookOf(uint i) {
     uint at = i * kFlipbookRecordWords;
@@ -49,11 +40,11 @@ vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
     level = level > 0u && smaller != 0u ? level : 0u;
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
-    outFrames = vec4(vec2(flipbookFrameOrigin(b, p.before)), vec2(flipbookFrameOrigin(b, p.after)));
-    outMotions =
+    vFrames = vec4(vec2(flipbookFrameOrigin(b, p.before)), vec2(flipbookFrameOrigin(b, p.after)));
+    vMotions =
         vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
-    outSizes = vec4(halves(b.size), halves(b.motionSize));
-    outBetween = vec2(p.part, b.maxMotion);
+    vSizes = vec4(halves(b.size), halves(b.motionSize));
+    vBetween = vec2(p.part, b.maxMotion);
     uint rect = kFlipbookRects + 2u * (flipbook * kMaxFlipbookFrames + p.before);
     // A texel of a mip covers more than the occupied texels of mip 0.
     vec2 wider = vec2(float((1u << level) - 1u)) / texels;
@@ -102,8 +93,8 @@ void main() {
         if (vertex > 2u) place = vec2(0.0);
     }
 #ifdef FW_FLIPBOOKS
-    outFrames = outMotions = outSizes = vec4(0.0);
-    outBetween = vec2(0.0);
+    vFrames = vMotions = vSizes = vec4(0.0);
+    vBetween = vec2(0.0);
     if ((quad.kind >> kQuadFlipbookShift & 0xFFu) != 0u) place = openFlipbook(quad, place, pixels);
 #endif
     vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
@@ -114,11 +105,11 @@ void main() {
     vec3 at = start + side * (place.x * quad.axisWidth.w) + axis * (place.y * quad.baseHeight.w);
     // Towards the camera, so that a wall behind does not cut the tongue.
     at += toEye * (smoke ? 0.0 : kQuadNearer * quad.axisWidth.w);
-    outSun = vec2(dot(view.sunDirection.xyz, side), dot(view.sunDirection.xyz, axis));
-    outPlace = place;
-    outState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);
-    outKind = quad.kind;
-    outWidth = quad.axisWidth.w;
+    vSun = vec2(dot(view.sunDirection.xyz, side), dot(view.sunDirection.xyz, axis));
+    vPlace = place;
+    vState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);
+    vKind = quad.kind;
+    vWidth = quad.axisWidth.w;
     gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
     if (kPart != kPartAll && ((quad.kind & 3u) == kQuadSpark) != (kPart == kPartSparks))
         gl_Position = vec4(-2.0, -2.0, 0.0, 1.0);  // belongs to the other part

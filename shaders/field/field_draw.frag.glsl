@@ -1,24 +1,14 @@
 // A particle field: density by cubic splines between cells, fine structure by tiled noise that the
 // motion advects in two phases. Emission uses the volumetric fires' profile; absorption takes sun
 // and sky; refraction has a specular surface. Output is premultiplied: colour, and coverage.
-#include "lib/view.glsl"
-#include "shared/field.h"
+#include "field/field_draw.glsl"
 #include "shared/volume.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(constant_id = 2) const uint kVariant = 0u;  // 0: only emits, 1: absorbs, 2: also refracts
-FW_READ(FIELD_SHOWN)
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
-layout(location = 0) centroid in vec2 inPlace;
-layout(location = 1) centroid in vec3 inNormal;
-layout(location = 2) centroid in vec3 inToEye;
-layout(location = 3) centroid in vec3 inAlong;
-layout(location = 4) flat in vec4 inLook;
-layout(location = 5) flat in vec4 inTint;
-layout(location = 6) flat in uvec4 inField;
-layout(location = 7) flat in vec4 inSize;
 
 layout(location = 0) out vec4 outColor;
 
@@ -44,27 +34,27 @@ struct Shown {
 
 // Cubic B-splines: 16 cells, weights and derivatives.
 Shown shownAt(vec2 place) {
-    int w = int(inField.y), h = int(inField.z);
+    int w = int(vField.y), h = int(vField.z);
     vec2 at = place * vec2(float(w), float(h)) - 0.5;
     vec2 low = floor(at), t = at - low, s = 1.0 - t;
     vec2 wt[4] = vec2[4](s * s * s / 6.0, (t * t * (3.0 * t - 6.0) + 4.0) / 6.0,
                          (s * s * (3.0 * s - 6.0) + 4.0) / 6.0, t * t * t / 6.0);
     vec2 ds[4] = vec2[4](-0.5 * s * s, t * (1.5 * t - 2.0), -s * (1.5 * s - 2.0), 0.5 * t * t);
-    bool ring = inField.w != 0u;
+    bool ring = vField.w != 0u;
     uint columns[4];
     float inside[4];
     FW_UNROLL for (int i = 0; i < 4; ++i) {
         int x = int(low.x) + i - 1;
         inside[i] = ring || (x >= 0 && x < w) ? 1.0 : 0.0;
         x = ring ? (x < 0 ? x + w : (x >= w ? x - w : x)) : clamp(x, 0, w - 1);
-        columns[i] = inField.x + uint(clamp(x, 0, w - 1));
+        columns[i] = vField.x + uint(clamp(x, 0, w - 1));
     }
     vec4 sum = vec4(0.0);
     vec2 slope = vec2(0.0);
     FW_UNROLL for (int j = 0; j < 4; ++j) {
         int y = int(low.y) + j - 1;
         float rows = y < h ? 1.0 : 0.0;
-        uint row = uint(clamp(y, 0, h - 1)) * inField.y;
+        uint row = uint(clamp(y, 0, h - 1)) * vField.y;
         vec4 across = vec4(0.0);
         float steep = 0.0;
         FW_UNROLL for (int i = 0; i < 4; ++i) {
@@ -81,7 +71,7 @@ Shown shownAt(vec2 place) {
 
 vec4 carried(vec2 cell, vec2 motion, float phase, float number, float lod) {
     vec2 moved = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
-    uvec3 of = uvec3(uint(number), uint(inSize.w), 3u);
+    uvec3 of = uvec3(uint(number), uint(vSize.w), 3u);
     vec2 jump = vec2(hash(of), hash(of + 4u));
     return textureLod(lookTextures,
                       vec3((cell - moved) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
@@ -101,13 +91,13 @@ struct Light {
     float alpha;
 };
 
-bool isRound() { return inField.w != 0u; }
+bool isRound() { return vField.w != 0u; }
 
 void addFire(Surface s, inout Light out_) {
-    float detail = inLook.x, body = inLook.y, strength = inLook.w;
+    float detail = vLook.x, body = vLook.y, strength = vLook.w;
     // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot
     // would only hide, and a flame would end in a stump.
-    float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
+    float y = vPlace.y * float(vField.z) / (2.6 * vSize.y), high = min(y, 1.0);
     float d = s.f.density * (1.0 + detail * (1.5 * s.rough + 0.6 * s.ridge)) -
               detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
     d = max(d, 0.0);
@@ -121,40 +111,40 @@ void addFire(Surface s, inout Light out_) {
     float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
     float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
     float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * s.edge;
-    out_.emitted += sootRadiance(kelvin) * kFireWhite * inTint.rgb *
+    out_.emitted += sootRadiance(kelvin) * kFireWhite * vTint.rgb *
                     (kFieldWhite * view.sunColor.w * thick * share1);
     out_.alpha += 0.55 * thick * min(share1, 1.0);
 }
 
 void addSmoke(Surface s, inout Light out_) {
-    float detail = inLook.x, body = inLook.y, strength = inLook.w;
+    float detail = vLook.x, body = vLook.y, strength = vLook.w;
     float d = max(s.f.density * (1.0 + 1.3 * detail * s.rough) - 0.05 * detail, 0.0);
     float tau = 3.4 * d * d * (isRound() ? max(s.facing, 0.0) * 1.6 : 1.0);
     float share1 = clamp(1.0 - abs(body - 1.0), 0.0, 1.0);
     float cover = (1.0 - exp(-tau * strength)) * s.edge * share1;
     if (isRound()) cover *= step(0.0, s.facing);
     // Billows tilt towards thinner density.
-    vec3 up = normalize(cross(s.normal, inAlong));
+    vec3 up = normalize(cross(s.normal, vAlong));
     vec2 lean =
         -s.f.slope * 2.2 - detail * vec2(s.noise.r - s.noise.b, s.noise.g - s.noise.r) * 0.9;
-    vec3 n = normalize(s.normal + inAlong * lean.x + up * lean.y);
+    vec3 n = normalize(s.normal + vAlong * lean.x + up * lean.y);
     float sky = 0.5 + 0.5 * dot(n, view.up.xyz);
     float through = 0.25 + 0.75 * smoothstep(-0.6, 0.9, dot(n, view.sunDirection.xyz));
     vec3 light = mix(view.ambientGround.rgb, view.ambientSky.rgb, sky) * (0.55 + 0.45 * s.f.sun) +
                  view.sunColor.rgb * (0.42 * s.f.sun * through);
-    vec3 grey = inTint.rgb * light * 0.42;
+    vec3 grey = vTint.rgb * light * 0.42;
     out_.lit += grey * cover;
     out_.alpha += cover;
 }
 
 void addWater(Surface s, inout Light out_) {
-    float detail = inLook.x, body = inLook.y, strength = inLook.w;
+    float detail = vLook.x, body = vLook.y, strength = vLook.w;
     float d = max(s.f.density * (1.0 + 1.6 * detail * s.rough), 0.0);
-    vec3 up = normalize(cross(s.normal, inAlong));
+    vec3 up = normalize(cross(s.normal, vAlong));
     // A sheet ends within a cell or two at pools and sources: full slopes there would make rims
     // rows of white highlights.
     vec2 wave = -s.f.slope * (isRound() ? 2.4 : 0.25) - detail * vec2(s.rough, 0.6 * s.ridge) * 1.8;
-    vec3 n = normalize(s.normal + inAlong * wave.x + up * wave.y);
+    vec3 n = normalize(s.normal + vAlong * wave.x + up * wave.y);
     float film = smoothstep(0.10, 0.42, d) * s.edge;
     if (isRound())
         film = smoothstep(0.10, 0.42, d) * step(0.0, s.facing) * smoothstep(0.0, 0.25, s.facing);
@@ -169,7 +159,7 @@ void addWater(Surface s, inout Light out_) {
     float foam = smoothstep(
         0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * s.ridge + 0.25 * length(s.f.motion));
     vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
-    vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
+    vec3 deep = vTint.rgb * vec3(0.10, 0.26, 0.31) * light;
     float share1 = clamp(body - 1.0, 0.0, 1.0) * strength * film;
     float cover = min(share1 * mix(0.42 + 0.2 * d, 0.85, foam), 0.97);
     out_.lit += cover * mix(deep, 0.75 * light, foam * 0.8) +
@@ -178,19 +168,19 @@ void addWater(Surface s, inout Light out_) {
 }
 
 void main() {
-    Shown f = shownAt(inPlace);
-    vec2 cell = inPlace * vec2(float(inField.y), float(inField.z));
-    bool round_ = inField.w != 0u;
-    vec3 toEye = normalize(inToEye), normal = normalize(inNormal);
+    Shown f = shownAt(vPlace);
+    vec2 cell = vPlace * vec2(float(vField.y), float(vField.z));
+    bool round_ = vField.w != 0u;
+    vec3 toEye = normalize(vToEye), normal = normalize(vNormal);
     float facing = dot(normal, toEye);
 
     // Two phases half a period apart: each is only visible while its displacement is short.
-    float turns = inLook.z / kPeriod + hash(uvec3(uint(inSize.w), 1u, 1u));
+    float turns = vLook.z / kPeriod + hash(uvec3(uint(vSize.w), 1u, 1u));
     float phase = turns - floor(turns), other = fract(turns + 0.5);
     float share = abs(2.0 * phase - 1.0);
-    vec2 speed = f.motion * inTint.w;  // cells per second
-    float pixel = view.eye.w * (view.forward.w > 0.5 ? dot(inToEye, -view.forward.xyz) : 1.0);
-    float lod = min(noiseLod(pixel, 1.0 / (kTile * inSize.x)), 5.0);
+    vec2 speed = f.motion * vTint.w;  // cells per second
+    float pixel = view.eye.w * (view.forward.w > 0.5 ? dot(vToEye, -view.forward.xyz) : 1.0);
+    float lod = min(noiseLod(pixel, 1.0 / (kTile * vSize.x)), 5.0);
     vec4 noise = mix(carried(cell, speed, phase, floor(turns), lod),
                      carried(cell, speed, other, floor(turns + 0.5), lod), share);
     float rough = (noise.r - 0.5) * 1.5 + (noise.b - 0.5) * 0.9;
@@ -201,8 +191,8 @@ void main() {
     if (round_) {
         edge = smoothstep(0.0, 0.75, abs(facing));
     } else {
-        vec2 b = min(inPlace.x, 1.0 - inPlace.x) * vec2(1.0);
-        edge = smoothstep(0.0, 0.08, b.x) * smoothstep(0.0, 0.10, 1.0 - inPlace.y);
+        vec2 b = min(vPlace.x, 1.0 - vPlace.x) * vec2(1.0);
+        edge = smoothstep(0.0, 0.08, b.x) * smoothstep(0.0, 0.10, 1.0 - vPlace.y);
     }
     Surface s = Surface(f, noise, rough, ridge, edge, facing, toEye, normal);
     Light light = Light(vec3(0.0), vec3(0.0), 0.0);
@@ -212,7 +202,7 @@ void main() {
     vec3 color = light.emitted, lit = light.lit;
     float alpha = min(light.alpha, 1.0);
 #ifdef FW_SOFT
-    float soft = smoothstep(0.0, 1.0, gapToScene() / (0.2 * inSize.z));
+    float soft = smoothstep(0.0, 1.0, gapToScene() / (0.2 * vSize.z));
     color *= soft;
     lit *= soft;
     alpha *= soft;

@@ -1,17 +1,8 @@
 // A particle field's body, generated from the vertex number: a billboard that turns about its up
 // axis, or a spheroid around which the field is wound, displaced by density if requested.
-#include "lib/view.glsl"
-#include "shared/field.h"
-FW_READ(FIELD_DRAWS) FW_READ(FIELD_SHOWN)
+#include "field/field_draw.glsl"
+FW_READ(FIELD_DRAWS)
 #include "lib/billboard.glsl"
-layout(location = 0) centroid out vec2 outPlace;          // over the field, [0, 1]
-layout(location = 1) centroid out vec3 outNormal;         // of the body
-layout(location = 2) centroid out vec3 outToEye;          // m
-layout(location = 3) centroid out vec3 outAlong;          // direction of the field's x
-layout(location = 4) flat out vec4 outLook;      // detail, body, time s, opacity
-layout(location = 5) flat out vec4 outTint;      // w: steps per second
-layout(location = 6) flat out uvec4 outField;    // first cell, width, height, 1: spheroid
-layout(location = 7) flat out vec4 outSize;      // m per cell; cells of mean height; depth m; seed
 
 const float kPi = 3.14159265;
 const float kBulge = 0.22;
@@ -63,16 +54,16 @@ void main() {
     onBall += normal * (bulge * (densityAt(d, ballPlace) - 0.35));
 
     vec3 at = flat_ ? onBillboard : onBall;
-    outPlace = flat_ ? billboardPlace : ballPlace;
-    outNormal = flat_ ? normalize(cross(side, axis)) : normal;
-    outToEye = -mix(view.forward.xyz, at, perspective);
-    outAlong = flat_ ? side * sense
+    vPlace = flat_ ? billboardPlace : ballPlace;
+    vNormal = flat_ ? normalize(cross(side, axis)) : normal;
+    vToEye = -mix(view.forward.xyz, at, perspective);
+    vAlong = flat_ ? side * sense
                      : normalize(-d.right.xyz * (sin(lon) * d.size.x) -
                                  d.forward.xyz * (cos(lon) * d.size.z));
-    outLook = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);
-    outTint = d.tint;
-    outField = uvec4(d.shown, d.width, d.height, flat_ ? 0u : 1u);
-    outSize = vec4(d.size.x / float(d.width) * (flat_ ? 1.0 : kPi), d.tall,
+    vLook = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);
+    vTint = d.tint;
+    vField = uvec4(d.shown, d.width, d.height, flat_ ? 0u : 1u);
+    vSize = vec4(d.size.x / float(d.width) * (flat_ ? 1.0 : kPi), d.tall,
                    flat_ ? 0.5 * d.size.x : d.size.z, float(d.seed & 1023u));
     gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
 }

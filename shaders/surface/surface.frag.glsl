@@ -1,12 +1,9 @@
 // A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and
 // lights the result. Writes linear HDR or encoded colour.
-#include "lib/view.glsl"
+#include "surface/surface.glsl"
 #include "shared/heat.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-// Material families of a variant, and whether it can burn (kSurface...). A software device executes
-// both sides of every branch, so unused code is compiled out.
-layout(constant_id = 2) const uint kVariant = 127u;
 const bool kHasPaint = (kVariant & kSurfacePaint) != 0u;
 const bool kHasWood = (kVariant & kSurfaceWood) != 0u;
 const bool kHasSheet = (kVariant & kSurfaceSheet) != 0u;
@@ -17,34 +14,19 @@ const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
 const bool kCold = (kVariant & kSurfaceCold) != 0u;
 
 FW_READ(PREDICT) FW_READ(GRADIENT) FW_BUFFER(HEAT, readonly, uint, heat)
-FW_UNIFORM(LIGHTS, BurnLight, lights[kSurfaceLights])
 FW_UNIFORM(APPEARANCES, MaterialAppearance, appearances[kAppearanceRows])
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
-layout(push_constant) uniform Push { SurfaceDraw draw; };
-
-// See surface.vert.
-layout(location = 0) centroid in vec4 inPositionFire;
-layout(location = 1) centroid in vec4 inRestFire;
-layout(location = 2) centroid in vec4 inNormalFire;
-layout(location = 3) centroid in vec4 inTexture;
-layout(location = 4) centroid in vec4 inDetail;
-layout(location = 5) centroid in vec4 inTint;
-
-layout(location = 6) centroid in vec2 inSootOffset;
-
 layout(location = 0) out vec4 outColor;
 
 #ifdef FW_MULTISAMPLED
-layout(location = 7) in vec3 inMiddle;
-layout(location = 8) in vec4 inMiddleUv;
-#define FW_POSITION inMiddle
-#define FW_ATLAS inMiddleUv.xy
-#define FW_DETAIL inMiddleUv.zw
+#define FW_POSITION vMiddle
+#define FW_ATLAS vMiddleUv.xy
+#define FW_DETAIL vMiddleUv.zw
 #else
-#define FW_POSITION inPositionFire.xyz
-#define FW_ATLAS inTexture.xy
-#define FW_DETAIL inDetail.xy
+#define FW_POSITION vPositionFire.xyz
+#define FW_ATLAS vTexture.xy
+#define FW_DETAIL vDetail.xy
 #endif
 
 #if FW_MULTISAMPLED == 2
@@ -64,7 +46,6 @@ const ivec2 kSamplePlaces[30] =
 #include "lib/colour.glsl"
 #include "lib/gradient.glsl"
 #include "lib/look_noise.glsl"
-#include "surface/plume.glsl"
 #include "surface/base.glsl"
 #include "surface/appearance.glsl"
 
@@ -241,8 +222,8 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
 vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float sootable) {
     if (dot(n, v) < 0.02) n = normalize(n + v * (0.04 - dot(n, v)));
     // Small triangles: lit per vertex, with the mean light direction.
-    vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
-    fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
+    vec3 fire = vec3(vPositionFire.w, vRestFire.w, vNormalFire.w);
+    fire *= max(0.0, dot(n, vec3(vDetail.zw, vTint.w)) + 0.25) * 0.64;
     bool small = (draw.flags & kDrawVertexLight) != 0u;
     uint count = small ? 0u : min(view.lightCount, kSurfaceLights);
     for (uint i = 0u; i < count; ++i) {
@@ -280,17 +261,17 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
 float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
 
 void main() {
-    if (kCold && inSootOffset.x > 0.0) discard;
+    if (kCold && vSootOffset.x > 0.0) discard;
     MaterialAppearance look = appearances[min(draw.look, kAppearanceRows - 1u)];
     if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
     // The rim uses the host's thickness, within the range of the appearance.
     if (draw.thickness > 0.0)
         look.thickness = clamp(draw.thickness, 0.4 * look.thickness, 2.0 * look.thickness);
-    vec3 inPosition = inPositionFire.xyz, inRest = inRestFire.xyz, inTintColor = inTint.rgb;
-    vec2 inAtlas = inTexture.xy;
+    vec3 inPosition = vPositionFire.xyz, inRest = vRestFire.xyz, inTintColor = vTint.rgb;
+    vec2 inAtlas = vTexture.xy;
 
     // Tangent plane: derivatives of atlas and detail coordinates along the surface.
-    vec3 normal = normalize(inNormalFire.xyz);
+    vec3 normal = normalize(vNormalFire.xyz);
     vec3 px = dFdx(FW_POSITION), py = dFdy(FW_POSITION);
     vec3 toEye = view.forward.w > 0.5 ? normalize(-inPosition) : -view.forward.xyz;
     // At a silhouette a pixel's middle may lie beyond the surface, where differences are unusable.
@@ -303,8 +284,8 @@ void main() {
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
     // Walls of holes and open borders have no vertex normals.
     bool cut = kBurns && (draw.flags & kDrawCut) != 0u;
-    bool wall = (draw.flags & kDrawCut) != 0u && inSootOffset.y < -0.5;
-    bool rim = cut && wall && inSootOffset.y > -2.5;
+    bool wall = (draw.flags & kDrawCut) != 0u && vSootOffset.y < -0.5;
+    bool rim = cut && wall && vSootOffset.y > -2.5;
     if (wall) normal = normalize(face);
     bool back = dot(face, normal) < 0.0;
     vec3 r1 = cross(py, normal), r2 = cross(normal, px);
@@ -336,7 +317,7 @@ void main() {
     vec2 d = flatPlace;
     vec3 axisX = facesX ? ez : ex, axisY = facesY ? ez : ey;
     if (detailed) {
-        d = inDetail.xy;
+        d = vDetail.xy;
         vec2 dx = dFdx(FW_DETAIL), dy = dFdy(FW_DETAIL);
         dx = known ? dx : vec2(0.0);
         dy = known ? dy : vec2(0.0);
@@ -355,7 +336,7 @@ void main() {
     vec2 near = clamp(shift, -0.5, 0.5);
     // Without a tangent plane slopes are ignored.
     float perMetre = inverse != 0.0 ? max(length(gradU), 1.0) : 1e9;
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootOffset.x, false);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, vSootOffset.x, false);
     Warmth warmth = Warmth(300.0, 0.0);
     vec2 wetness = vec2(0.0);
     if (kBurns) {
@@ -386,7 +367,7 @@ void main() {
     bool cutOut = false;  // transparent image texel; decided below, where no derivatives are needed
     Base fresh;
     if (kImage) {
-        vec4 texel = texture(baseImage, inTexture.zw);
+        vec4 texel = texture(baseImage, vTexture.zw);
         color = texel.rgb;
         cutOut = texel.a < 0.5;
         fresh.factor = vec3(1.0);
@@ -451,12 +432,12 @@ void main() {
     site.bubbleSlope = vec2(dot(swell, axisX), dot(swell, axisY));
 
     // The opposite wall's burn makes holes here, too, even before this side catches.
-    site.offset = cut ? 0.0 : inSootOffset.y;
+    site.offset = cut ? 0.0 : vSootOffset.y;
     if (!cut && (draw.flags & kDrawPlaced) != 0u) {
         site.age = max(site.age, -1e3);
-        site.offset = burnThroughOffset(site.age, inSootOffset.y, look.holeTime);
+        site.offset = burnThroughOffset(site.age, vSootOffset.y, look.holeTime);
     }
-    site.left = cut ? max(inSootOffset.y, 0.0) * draw.timeScale : -1.0;
+    site.left = cut ? max(vSootOffset.y, 0.0) * draw.timeScale : -1.0;
     site.nearness = draw.nearness;
     // Walls on borders have no rim. Where corners are too far apart to know a hole between them,
     // texels do.
@@ -464,7 +445,7 @@ void main() {
     if (rim) {
         // Burnt-through char; the rim's glow fades inwards.
         site.age = max(site.age, look.holeTime);
-        site.left = saturate(-1.0 - inSootOffset.y) * look.thickness * site.slow;
+        site.left = saturate(-1.0 - vSootOffset.y) * look.thickness * site.slow;
     }
     bool soon = site.offset >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
     bool cold =

@@ -1,14 +1,8 @@
 // Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far
 // from the world's origin. Lights small triangles per vertex.
-#include "lib/view.glsl"
-#include "surface/plume.glsl"
-
-layout(constant_id = 2) const uint kVariant = 127u;  // see surface.frag
-
-FW_UNIFORM(LIGHTS, BurnLight, lights[kSurfaceLights])
+#include "surface/surface.glsl"
 FW_BUFFER(REFINE_VERTICES, readonly, vec4, places)
 FW_BUFFER(TILE_STATE, readonly, uvec4, tileStates)
-layout(push_constant) uniform Push { SurfaceDraw draw; };
 
 layout(location = 0) in vec3 inPosition;  // m, object space, as displayed
 layout(location = 1) in uint inNormal;  // signed 11:11:10
@@ -19,25 +13,6 @@ layout(location = 5) in vec4 inTint;
 layout(location = 6) in uint inSlot;   // of refined vertices
 layout(location = 7) in float inOffset;  // burn-through offset, appearance seconds
 layout(location = 8) in vec3 inRest;   // m, object space, before deformation
-
-// centroid: values at a pixel's middle beside the triangle would extrapolate off the mesh and
-// outline burnt triangles.
-// M, world, relative to the camera; w: flame light, red
-layout(location = 0) centroid out vec4 outPosition;
-layout(location = 1) centroid out vec4 outRest;      // m, object axes, world scale; w: green
-layout(location = 2) centroid out vec4 outNormal;    // w: blue
-layout(location = 3) centroid out vec4 outTexture;   // xy: texels of the atlas; zw: UV
-layout(location = 4) centroid out vec4 outDetail;    // xy: m; zw and ...
-layout(location = 5) centroid out vec4 outTint;      // w: ... mean direction to the flames
-layout(location = 6) centroid out vec2
-    outSootOffset;  // soot of flames below; appearance seconds, see inOffset; with
-                    // kDrawCut the last word of a cut vertex, in s; with
-                    // kSurfaceCold x: 1 near traces of fire
-#ifdef FW_MULTISAMPLED
-// At pixels' middles, which form a grid, so differences between them are safe.
-layout(location = 7) out vec3 outMiddle;    // as outPosition
-layout(location = 8) out vec4 outMiddleUv;  // as outTexture and outDetail: xy
-#endif
 
 #include "lib/turn.glsl"
 #include "surface/place.glsl"
@@ -58,7 +33,7 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
     towards += vec4(to, 1.0) * e;
     // Burnt objects store soot in texels.
     if ((kVariant & (kSurfaceBurns | kSurfaceCold)) == 0u)
-        outSootOffset.x += plumeSoot(d, light.power, view.up.xyz);
+        vSootOffset.x += plumeSoot(d, light.power, view.up.xyz);
 }
 
 // Has fire, heat, water or soot left a mark within reach?
@@ -98,7 +73,7 @@ void main() {
     }
     vec3 position = fromEye(rest);
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
-    outSootOffset = vec2(0.0, offset);
+    vSootOffset = vec2(0.0, offset);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
     // A loop, not a branch: a software device would execute the branch masked; a loop that ends at
@@ -107,21 +82,21 @@ void main() {
     for (uint i = 0u; i < count; ++i) addFlame(lights[i], position, normal, color, towards);
     towards.xyz /= towards.w;
 
-    outPosition = vec4(position, color.r);
-    outRest = vec4(inRest * scale, color.g);
-    outNormal = vec4(normal, color.b);
-    outTexture = vec4(inAtlas, inTexture);
-    outDetail = vec4(inDetail * scale, towards.xy);
-    outTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
+    vPositionFire = vec4(position, color.r);
+    vRestFire = vec4(inRest * scale, color.g);
+    vNormalFire = vec4(normal, color.b);
+    vTexture = vec4(inAtlas, inTexture);
+    vDetail = vec4(inDetail * scale, towards.xy);
+    vTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
 #ifdef FW_MULTISAMPLED
-    outMiddle = position;
-    outMiddleUv = vec4(outTexture.xy, outDetail.xy);
+    vMiddle = position;
+    vMiddleUv = vec4(vTexture.xy, vDetail.xy);
 #endif
     gl_Position = clipPlace(position);
     // Moves marked corners beyond the far plane: triangles with three such corners are clipped,
     // fragments of others are discarded, and remaining samples lie behind the burning surface.
     if ((kVariant & kSurfaceCold) != 0u && (offset >= 1e-3 || markedNear(inAtlas))) {
-        outSootOffset.x = 1.0;
+        vSootOffset.x = 1.0;
         gl_Position.z = view.wind.w * gl_Position.w;
     }
 }

@@ -12,21 +12,21 @@ vec4 marchPixelColor(uvec4 pixel) {
 }
 
 // Light counts if it lies in front of the host's scene; without the host's depth, if it lies on the
-// flame's side of the base plane. Needs `draw`, `inSlab` and `inBase`.
+// flame's side of the base plane. Needs `draw`, `vSlab` and `vBase`.
 #ifdef FW_SOFT
 #include "volume/scene_depth.glsl"
 float cutDepth() { return depthOfScene(draw.clip); }
 #else
-float cutDepth() { return metresOfDepth(draw.clip, inBase.x); }
+float cutDepth() { return metresOfDepth(draw.clip, vBase.x); }
 #endif
 // Slabs from this slab's near distance to the cut.
-float slabsToCut() { return (cutDepth() - inSlab.x) * inSlab.y; }
+float slabsToCut() { return (cutDepth() - vSlab.x) * vSlab.y; }
 // Share of a march pixel's light that counts. small: march pixels smaller than a pixel have bases
 // of their own.
 float countingShare(uint range, float cut, bool small) {
 #ifdef FW_SOFT
     return slabShareNearer(range, cut);
 #else
-    return small ? 1.0 : slabShareBeside(range, cut, inBase.y);
+    return small ? 1.0 : slabShareBeside(range, cut, vBase.y);
 #endif
 }

@@ -1,19 +1,8 @@
 // A marched flame's visible tiles, slab by slab from far to near, each at its slab's depth.
 #include "lib/buffers.glsl"
-#include "shared/burn.h"
-#include "shared/volume_draw.h"
+#include "volume/volume_composite.glsl"
 
 FW_READ(VOLUME_RAYS)
-layout(push_constant) uniform Push { CompositePush draw; };
-
-layout(location = 0) centroid out vec2 outPixel;  // of the flame, from the middle of its first
-layout(location = 1) flat out uint outWords;  // first of the slab
-layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance; 1/m: depth
-layout(location = 3) flat out ivec4 outPixels; // first and last valid
-layout(location = 4) flat out uint outPerPixel;
-layout(location = 5) flat out vec2 outShows;
-// Clip z / w of the plane through the base; VolumeDraw::base.w.
-layout(location = 6) centroid out vec2 outBase;
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
@@ -50,18 +39,18 @@ void main() {
             if (y > 0) reach.w = may ? reach.w : 0;
         }
     }
-    outPixels =
+    vPixels =
         ivec4(at, at) * int(kMarchTileSide) + reach + ivec4(0, 0, ivec2(kMarchTileSide - 1u));
     vec2 pixel = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kMarchTileSide);
-    outPixel = pixel - 0.5;
+    vPixel = pixel - 0.5;
     uint pixels = tiles * kMarchTileSide * kMarchTileSide;
-    outWords = draw.samples + kMarchPixelWords * pixels * slab;
+    vWords = draw.samples + kMarchPixelWords * pixels * slab;
     float front = draw.front + draw.deep * float(slab);
-    outPerPixel = draw.perPixel | (vertex >> 31u);  // not constant, see volume_march
-    outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
-    outSlab = vec2(front, 1.0 / draw.deep);
+    vPerPixel = draw.perPixel | (vertex >> 31u);  // not constant, see volume_march
+    vShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
+    vSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * pixel;
-    outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
+    vBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
     float depth = testedDepth(makeDepthTest(draw.base, draw.clip, front, draw.deep, place));
     gl_Position = ((lit >> slab) & 1u) != 0u ? vec4(place, depth, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 }
