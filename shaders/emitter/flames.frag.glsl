@@ -7,7 +7,6 @@
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
-
 #ifdef FW_FLIPBOOKS
 // If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
 // for every quad.

@@ -10,7 +10,6 @@ FW_READ(FLAMES) FW_READ(DRAW_ARGS)
 
 layout(constant_id = 3) const uint kPart = kPartAll;
 
-
 #ifdef FW_FLIPBOOKS
 
 FlipbookRecord flipbookOf(uint i) {

@@ -9,7 +9,6 @@ layout(constant_id = 2) const uint kVariant = 0u;  // 0: only emits, 1: absorbs,
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
-
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"

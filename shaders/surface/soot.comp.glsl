@@ -9,7 +9,6 @@ FW_READ_WRITE(GRADIENT) FW_PUSH(StepPush)
 #include "lib/skin.glsl"
 #include "surface/plume.glsl"
 
-
 const uint kUnseen = 3u;  // invisible amount of soot
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
 

@@ -17,6 +17,7 @@ FW_READ(PREDICT) FW_READ(GRADIENT) FW_BUFFER(HEAT, readonly, uint, heat)
 FW_UNIFORM(APPEARANCES, MaterialAppearance, appearances[kAppearanceRows])
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
+
 layout(location = 0) out vec4 outColor;
 
 #ifdef FW_MULTISAMPLED

@@ -4,7 +4,6 @@
 // neighbouring march pixels would cross.
 #include "volume/volume_composite.glsl"
 
-
 layout(location = 0) out vec4 outColor;
 
 #include "volume/march_pixels.glsl"

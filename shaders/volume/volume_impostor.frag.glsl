@@ -3,7 +3,6 @@
 // side of the base plane.
 #include "volume/volume_impostor.glsl"
 
-
 layout(location = 0) out vec4 outColor;
 
 #include "volume/march_pixels.glsl"

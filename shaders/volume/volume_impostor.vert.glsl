@@ -2,7 +2,6 @@
 // its current size.
 #include "volume/volume_impostor.glsl"
 
-
 vec2 placeOf(vec2 pixel) {
     return draw.place.xy + draw.place.zw * pixel.x + vec2(draw.upX, draw.upY) * pixel.y;
 }
