@@ -139,6 +139,10 @@ struct BurnDomain {
         return report.realTexels ? report.texelArea / double(report.realTexels)
                                  : double(texelSide) * double(texelSide);
     }
+    void setSize(uint32_t columns, uint32_t rows) noexcept {  // texels, multiples of 8
+        width = columns, height = rows;
+        tilesX = columns / kTileSide, tilesY = rows / kTileSide;
+    }
     [[nodiscard]] uint32_t texelCount() const noexcept { return width * height; }
     // m, object space, at rest.
     [[nodiscard]] glm::dvec3 placeOf(uint32_t texel) const noexcept {

@@ -305,8 +305,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     Counts counts;
     scalars(reader, domain, counts);
     checkScalars(domain);
-    domain.tilesX = domain.width / kTileSide;
-    domain.tilesY = domain.height / kTileSide;
+    domain.setSize(domain.width, domain.height);
     // Sizes before memory: the arrays must need exactly the bytes that are left.
     if (const uint64_t expected = arrayBytes(domain, counts); expected != reader.left())
         core::fail(FW_ERROR_BAD_DATA, "The cooked mesh's arrays need %zu bytes; it has %zu.",
@@ -318,7 +317,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     checkFront(domain);
     checkDrawn(domain);
     buildTileBounds(domain);
-    linkParts(domain, memory);
+    linkParts(domain);
     return domain;
 }
 

@@ -22,9 +22,9 @@ struct Places {
     [[nodiscard]] glm::dvec3 at(uint32_t texel) const { return shape * from.placeOf(texel); }
 };
 
-void measure(const Places& places, BurnDomain& out, std::pmr::memory_resource* memory) {
+void measure(const Places& places, BurnDomain& out) {
     const BurnDomain& from = places.from;
-    std::pmr::vector<float> shorter(memory);
+    std::pmr::vector<float> shorter(out.memory);
     double longest = 0;
     for (uint32_t i = 0; i < from.texelCount(); ++i) {
         if (!from.real(i)) continue;
@@ -58,7 +58,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     BurnDomain out(memory);
     out = from;  // vectors keep `memory`
     const Places places{from, shape};
-    measure(places, out, memory);
+    measure(places, out);
 
     glm::dvec3 low, high;
     for (int k = 0; k < 3; ++k) {
@@ -107,7 +107,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
             std::swap(out.indices[i + 1], out.indices[i + 2]);
     FW_ASSERT(growth > 0 && growth < 1e12, "growth %g", growth);
     buildTileBounds(out);
-    linkParts(out, memory);
+    linkParts(out);
     return out;
 }
 

@@ -209,7 +209,7 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
     return surface;
 }
 
-void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* memory) {
+void pairEdges(Surface& surface, bool uvMeaningful) {
     auto& triangles = surface.triangles;
     surface.openEdges = surface.nonManifoldEdges = surface.seamEdges = surface.chartCount = 0;
     for (Triangle& t : triangles) {
@@ -219,11 +219,11 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
         std::fill_n(t.neighbour, 3, kNone);
         std::fill_n(t.seam, 3, false);
     }
-    const std::pmr::vector<EdgeUse> uses = sortedUses(triangles, memory);
+    const std::pmr::vector<EdgeUse> uses = sortedUses(triangles, surface.memory);
 
-    std::pmr::vector<uint32_t> parent(triangles.size(), memory);
+    std::pmr::vector<uint32_t> parent(triangles.size(), surface.memory);
     std::iota(parent.begin(), parent.end(), 0u);
-    std::pmr::vector<uint8_t> used(uses.size(), 0, memory);
+    std::pmr::vector<uint8_t> used(uses.size(), 0, surface.memory);
     for (size_t start = 0, end = 0; start < uses.size(); start = end) {
         while (end < uses.size() && uses[start].sameEdge(uses[end])) ++end;
         surface.nonManifoldEdges += end - start > 2;
@@ -256,7 +256,7 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
                 ++surface.seamEdges;
         }
     }
-    std::pmr::vector<uint32_t> number(triangles.size(), kNone, memory);
+    std::pmr::vector<uint32_t> number(triangles.size(), kNone, surface.memory);
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         uint32_t& n = number[rootOf(parent, i)];
         if (n == kNone) n = surface.chartCount++;

@@ -16,12 +16,12 @@ void setBit(uint32_t& low, uint32_t& high, uint32_t lane) {
 
 }  // namespace
 
-void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory) {
+void buildTiles(const TexelGrid& grid, BurnDomain& domain) {
     FW_ASSERT(grid.count() == domain.texelCount(), "%u and %u texels", grid.count(),
               domain.texelCount());
     FW_ASSERT(domain.links.empty() && domain.dependents.empty());
     domain.tiles.assign(domain.tileCount(), TileStatic{});
-    std::pmr::vector<Read> reads(memory);
+    std::pmr::vector<Read> reads(grid.memory);
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         TileStatic& tile = domain.tiles[t];
         tile.rimBase = uint32_t(domain.links.size() / 8);
