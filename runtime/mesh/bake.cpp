@@ -78,10 +78,6 @@ void fillHeader(const BakeInput& input, const Surface& surface, const AtlasPlan&
     report.vertices = uint32_t(input.positions.size() / 3);
     report.triangles = uint32_t(surface.triangles.size());
     report.charts = surface.chartCount;
-    report.degenerate = surface.degenerate;
-    report.openEdges = surface.openEdges;
-    report.nonManifoldEdges = surface.nonManifoldEdges;
-    report.seamEdges = surface.seamEdges;
     report.usedOwnUv = plan.ownUv;
     report.rechartedTriangles = plan.recharted;
 }
@@ -95,6 +91,7 @@ BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory) {
     Surface surface = collectSurface(input, 0.5 / (input.texelsPerMetre * kUnitsPerTexel), memory);
     const AtlasPlan plan = packAtlas(surface, input);
     pairEdges(surface, true);
+    domain.report = surface.report;
     TexelGrid grid = rasterise(surface, plan, domain.report);
     linkTexels(surface, grid, domain.report);
     fillHeader(input, surface, plan, grid, domain);

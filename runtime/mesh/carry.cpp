@@ -3,18 +3,18 @@
 #include "shared/front.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <glm/ext/vector_int3_sized.hpp>
 #include <limits>
 
 namespace fw::mesh {
 namespace {
 
-constexpr int64_t kFaces = int64_t(1) << 27;  // of two unit normals in Q14: within 60 degrees
-constexpr double kFarthest = 2e9;             // micrometres, of a reach: squares fit
+constexpr int kFaces = 1 << 27;    // of two unit normals in Q14: within 60 degrees
+constexpr double kFarthest = 2e9;  // micrometres, of a reach: squares fit
 
 // Micrometres: whole numbers, so that every machine picks the same texels.
-using Place = std::array<int64_t, 3>;
+using Place = glm::i64vec3;
 
 Place micrometresOf(const BurnDomain& domain, uint32_t texel) noexcept {
     const glm::dvec3 place = domain.placeOf(texel) * 1e6;
@@ -32,13 +32,11 @@ std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<
     std::pmr::vector<PlacedTile> tiles(places.get_allocator().resource());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         constexpr int64_t kFar = std::numeric_limits<int64_t>::max();
-        PlacedTile tile{t, {kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+        PlacedTile tile{t, Place(kFar), Place(-kFar)};
         eachTexel(domain, tile.tile, [&](uint32_t texel) {
             const Place& place = places[texel] = micrometresOf(domain, texel);
-            for (size_t i = 0; i < 3; ++i) {
-                tile.low[i] = std::min(tile.low[i], place[i]);
-                tile.high[i] = std::max(tile.high[i], place[i]);
-            }
+            tile.low = glm::min(tile.low, place);
+            tile.high = glm::max(tile.high, place);
         });
         if (tile.low[0] <= tile.high[0]) tiles.push_back(tile);
     }
@@ -48,7 +46,7 @@ std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<
 // Square of the distance between two boxes, or most * most + 1 if it is larger than most * most.
 int64_t gapOf(const Place& lowA, const Place& highA, const PlacedTile& b, int64_t most) noexcept {
     int64_t sum = 0;
-    for (size_t i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i) {
         const int64_t gap = std::max({lowA[i] - b.high[i], b.low[i] - highA[i], int64_t(0)});
         if (gap > most) return most * most + 1;
         sum += gap * gap;
@@ -93,15 +91,11 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                 const PlacedTile& source = sources[one.tile];
                 if (gapOf(place, place, source, farthest) > std::min(best, least)) continue;
                 eachTexel(from, source.tile, [&](uint32_t other) {
-                    const Place& there = fromPlaces[other];
-                    int64_t square = 0;
-                    for (size_t i = 0; i < 3; ++i)
-                        square += (there[i] - place[i]) * (there[i] - place[i]);
+                    const Place off = fromPlaces[other] - place;
+                    int64_t square = off.x * off.x + off.y * off.y + off.z * off.z;
                     if (square > std::min(best, least)) return;
-                    const gpu::ivec3 n = gpu::decodeNormal(from.normals[other]);
-                    const int64_t along =
-                        int64_t(n.x) * normal.x + int64_t(n.y) * normal.y + int64_t(n.z) * normal.z;
-                    if (along < kFaces) square += least;
+                    if (gpu::dotInt(gpu::decodeNormal(from.normals[other]), normal) < kFaces)
+                        square += least;
                     if (square > best || (square == best && other > taken)) return;
                     best = square;
                     taken = other;

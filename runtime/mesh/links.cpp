@@ -211,10 +211,6 @@ struct Linker {
         const glm::dvec3 u = unitOr0(t.position[1] - t.position[0]);
         return (u * x + glm::cross(t.normal, u) * y) * grid.side;
     }
-    [[nodiscard]] glm::dvec3 cut(glm::dvec3 step) const {
-        const double length = glm::length(step), limit = kStepLimit * grid.side;
-        return length > limit ? step * (limit / length) : step;
-    }
 
     [[nodiscard]] bool plain(uint32_t i, uint32_t j, size_t k) const {
         if (j == kNone || !grid.real(j) || grid.chart[j] != grid.chart[i]) return false;
@@ -258,7 +254,9 @@ struct Linker {
 
     // The texel one step away over the surface, or kNone. `exact`: the step ends in that texel.
     uint32_t across(uint32_t texel, size_t k, bool& exact) {
-        const glm::dvec3 step = cut(stepOf(texel, k));
+        glm::dvec3 step = stepOf(texel, k);
+        if (const double length = glm::length(step); length > kStepLimit * grid.side)
+            step *= kStepLimit * grid.side / length;
         bool open = false;
         for (int reach = 1; reach <= kReaches; ++reach) {
             const Walk walk = walkFrom(texel, step * double(reach));

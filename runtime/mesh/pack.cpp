@@ -209,9 +209,8 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
         // Height shrinks with the square of the density, until only borders are left.
         density /= std::clamp(std::sqrt(over), places < kPlaces ? kStep : kWideStep, 2.0);
     }
-    core::fail(FW_ERROR_INVALID_ARGUMENT,
-               "The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",
-               packer.pieces(), side, side);
+    core::refuse("The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",
+                 packer.pieces(), side, side);
 }
 
 }  // namespace fw::mesh

@@ -72,12 +72,6 @@ class RayTree {
         stepsLeft -= steps;
         return nearest;
     }
-    // Likewise, without a budget of all rays.
-    [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
-                             uint32_t self) const {
-        int64_t steps = kMostSteps;
-        return cast(from, direction, least, self, steps);
-    }
 
  private:
     static constexpr uint32_t kLeaf = 4;  // triangles

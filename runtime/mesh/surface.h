@@ -116,7 +116,7 @@ struct Surface {
     glm::dvec3 low{0}, high{0};  // m
     double extent = 0;           // m, longest side
     double area = 0;             // m^2
-    uint32_t degenerate = 0, openEdges = 0, nonManifoldEdges = 0, seamEdges = 0;
+    BakeReport report;           // of the steps so far
 };
 
 // How a triangle's texels lie on the surface: metres per texel along atlas u and v.

@@ -14,16 +14,15 @@ constexpr uint32_t kMaxSlots = 1u << 24;
 
 void check(const RefineOptions& options) {
     if (!(options.wall > 0 && options.wall <= 0.6f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "RefineOptions::wall is %g m; it must lie in (0, 0.6].", double(options.wall));
+        core::refuse("RefineOptions::wall is %g m; it must lie in (0, 0.6].", double(options.wall));
     if (options.depth > gpu::kRefineDepth)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "RefineOptions::depth is %u; it must be at most %u.",
-                   options.depth, gpu::kRefineDepth);
+        core::refuse("RefineOptions::depth is %u; it must be at most %u.", options.depth,
+                     gpu::kRefineDepth);
     if (!(options.cellTexels >= 0) || !(options.splitTexels >= 0))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "RefineOptions::cellTexels and splitTexels are %g and %g; neither may be "
-                   "negative.",
-                   double(options.cellTexels), double(options.splitTexels));
+        core::refuse(
+            "RefineOptions::cellTexels and splitTexels are %g and %g; neither may be "
+            "negative.",
+            double(options.cellTexels), double(options.splitTexels));
 }
 
 uint32_t deepest(double length, double cell, uint32_t depth) {
@@ -126,10 +125,10 @@ void numberSlots(RefineModel& model) {
         t.slot = uint32_t(slots);
         slots += gpu::refineInnerCount(m);
         if (slots > kMaxSlots)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Refinement needs more than %u vertices for %zu coarse triangles; lower "
-                       "RefineOptions::depth or raise cellTexels.",
-                       kMaxSlots, model.triangles.size());
+            core::refuse(
+                "Refinement needs more than %u vertices for %zu coarse triangles; lower "
+                "RefineOptions::depth or raise cellTexels.",
+                kMaxSlots, model.triangles.size());
     }
     FW_ASSERT(slots >= model.cornerCount, "%u corners", model.cornerCount);
     model.slots.resize(slots);

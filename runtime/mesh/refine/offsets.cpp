@@ -37,7 +37,9 @@ struct Offsets {
     // The nearest surface along a direction; RayTree::kReach or more: none.
     [[nodiscard]] double depth(glm::dvec3 from, glm::dvec3 direction) const {
         const float least = float(1e-4 * surface.extent);
-        return double(tree.cast(glm::vec3(from - surface.low), glm::vec3(direction), least, kNone));
+        int64_t steps = RayTree::kMostSteps;  // of one ray: there is no budget of all
+        return double(
+            tree.cast(glm::vec3(from - surface.low), glm::vec3(direction), least, kNone, steps));
     }
     [[nodiscard]] const glm::dvec3& normal(uint32_t triangle) const {
         return surface.triangles[coarse.triangles[triangle].source].normal;
