@@ -34,25 +34,16 @@ struct TexelPosition {  // 8 bytes, RGBA16_UINT: rest position in units of `quan
     [[nodiscard]] glm::ivec3 units() const noexcept { return {x, y, z}; }
 };
 
-struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
-    uint32_t seamMaskLow = 0;  // texels of this tile that some other tile reads through a link
-    uint32_t seamMaskHigh = 0;
-    uint32_t dependentStart = 0;  // into BurnDomain::dependents
-    uint32_t dependentCount = 0;
-    uint32_t rimMaskLow = 0;  // texels of this tile with a link record
-    uint32_t rimMaskHigh = 0;
+struct TileStatic {         // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
+    uint64_t seamMask = 0;  // texels of this tile that some other tile reads through a link
+    uint32_t dependentStart = 0, dependentCount = 0;  // into BurnDomain::dependents
+    uint64_t rimMask = 0;                             // texels of this tile with a link record
     uint32_t rimBase = 0;  // record of a rim texel = rimBase + popcount(rimMask below its lane)
     uint32_t reserved = 0;
-    [[nodiscard]] uint64_t seamMask() const noexcept {
-        return uint64_t(seamMaskHigh) << 32 | seamMaskLow;
-    }
-    [[nodiscard]] uint64_t rimMask() const noexcept {
-        return uint64_t(rimMaskHigh) << 32 | rimMaskLow;
-    }
     // The link record of a rim texel.
     [[nodiscard]] uint32_t recordOf(uint32_t lane) const noexcept {
-        FW_ASSERT(lane < 64 && (rimMask() >> lane & 1) != 0, "lane %u is no rim texel", lane);
-        return rimBase + uint32_t(std::popcount(rimMask() & ((uint64_t(1) << lane) - 1)));
+        FW_ASSERT(lane < 64 && (rimMask >> lane & 1) != 0, "lane %u is no rim texel", lane);
+        return rimBase + uint32_t(std::popcount(rimMask & ((uint64_t(1) << lane) - 1)));
     }
 };
 
@@ -173,6 +164,20 @@ struct BurnDomain {
         return {tile / tilesX * kTileSide * width + tile % tilesX * kTileSide, width};
     }
 };
+
+// The k-th in the ring of a real texel, or kNone.
+inline uint32_t ringOf(const BurnDomain& domain, uint32_t texel, uint32_t k) noexcept {
+    FW_ASSERT(k < 8 && domain.real(texel), "slot %u of texel %u", k, texel);
+    if (domain.texels[texel].materialFlags & kTexelRim) {
+        const TileStatic& tile = domain.tiles[domain.tileOf(texel)];
+        const uint32_t record = tile.recordOf(domain.laneOf(texel));
+        FW_ASSERT(size_t(record) * 8 + k < domain.links.size(), "record %u", record);
+        return domain.links[size_t(record) * 8 + k];
+    }
+    const int other = int(texel) + kRingY[k] * int(domain.width) + kRingX[k];
+    FW_ASSERT(other >= 0 && other < int(domain.texelCount()), "texel %d", other);
+    return uint32_t(other);
+}
 
 // Calls visit(texel) or visit(texel, lane) for the real texels of a tile, in order.
 template <class Visit>

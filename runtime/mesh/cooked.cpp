@@ -4,7 +4,6 @@
 // The reader trusts nothing: it also refuses a file with a right checksum and wrong indices.
 #include "core/hash.h"
 #include "core/stream.h"
-#include "mesh/ring.h"
 #include "mesh/texels.h"
 #include "shared/front.h"
 
@@ -35,8 +34,7 @@ template <class T>
 concept Vertex = std::is_same_v<std::remove_const_t<T>, RenderVertex>;
 void record(auto& s, Texel auto& t) { s.numbers(t.x, t.y, t.z, t.materialFlags); }
 void record(auto& s, Tile auto& t) {
-    s.numbers(t.seamMaskLow, t.seamMaskHigh, t.dependentStart, t.dependentCount, t.rimMaskLow,
-              t.rimMaskHigh, t.rimBase, t.reserved);
+    s.numbers(t.seamMask, t.dependentStart, t.dependentCount, t.rimMask, t.rimBase, t.reserved);
 }
 void record(auto& s, Vertex auto& v) {
     s.numbers(v.position, v.normal, v.atlasUv, v.textureUv, v.detail, v.tint, v.material);
@@ -123,7 +121,7 @@ void checkTiles(const BurnDomain& d) {
     uint32_t records = 0, dependents = 0;
     for (uint32_t t = 0; t < d.tileCount(); ++t) {
         const TileStatic& tile = d.tiles[t];
-        const uint64_t rim = tile.rimMask();
+        const uint64_t rim = tile.rimMask;
         require(tile.rimBase == records, "First link record of a tile", t);
         require(tile.dependentStart == dependents &&
                     tile.dependentCount <= d.dependents.size() - dependents,

@@ -1,7 +1,5 @@
 #include "mesh/hold.h"
 
-#include "mesh/ring.h"
-
 #include <algorithm>
 
 namespace fw::mesh {

@@ -1,6 +1,5 @@
-#include "mesh/shaped.h"
+#include "mesh/bake.h"
 
-#include "mesh/ring.h"
 #include "mesh/texels.h"
 #include "shared/front.h"
 

@@ -10,10 +10,6 @@ struct Read {  // tile `to` has a record that names a texel of tile `of`
     auto operator<=>(const Read&) const = default;
 };
 
-void setBit(uint32_t& low, uint32_t& high, uint32_t lane) {
-    (lane < 32 ? low : high) |= 1u << (lane & 31);
-}
-
 }  // namespace
 
 void buildTiles(const TexelGrid& grid, BurnDomain& domain) {
@@ -29,15 +25,14 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain) {
         for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
             const uint32_t texel = texels[lane];
             if (!grid.real(texel) || grid.linkRecord[texel] == kNone) continue;
-            setBit(tile.rimMaskLow, tile.rimMaskHigh, lane);
+            tile.rimMask |= uint64_t(1) << lane;
             for (int k = 0; k < 8; ++k) {
                 const uint32_t link = grid.ring(texel, k);
                 domain.links.push_back(link);
                 const uint32_t of = link == kNone ? t : domain.tileOf(link);
                 if (of == t) continue;
                 reads.push_back({of, t});
-                TileStatic& source = domain.tiles[of];
-                setBit(source.seamMaskLow, source.seamMaskHigh, domain.laneOf(link));
+                domain.tiles[of].seamMask |= uint64_t(1) << domain.laneOf(link);
             }
         }
     }

@@ -1,7 +1,6 @@
 #include "mesh/deform/model.h"
 
 #include "mesh/bake.h"
-#include "mesh/deform/bends.h"
 #include "mesh/surface.h"
 
 #include <algorithm>
