@@ -78,8 +78,8 @@ int64_t unitsOf(const BurnDomain& domain, float metres) {
     return metres >= 0 ? toUnits(double(metres), double(domain.quantum)) : 0;  // also of NaN
 }
 
-constexpr int kFaces = 1 << 27;    // of two unit normals in Q14: within 60 degrees
-constexpr double kFarthest = 2e9;  // micrometres, of a reach: squares fit
+constexpr int kFaces = 1 << 27;         // of two unit normals in Q14: within 60 degrees
+constexpr double kFarthestReach = 2e9;  // micrometres, of a reach: squares fit
 
 // Micrometres: whole numbers, so that every machine picks the same texels.
 using Place = glm::i64vec3;
@@ -185,7 +185,7 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                                        tiles = tilesOf(to, toPlaces);
     std::pmr::vector<NearTile> near(memory);
     out.assign(to.texelCount(), kNone);
-    const auto farthest = int64_t(std::min(double(reach) * 1e6, kFarthest));
+    const auto farthest = int64_t(std::min(double(reach) * 1e6, kFarthestReach));
     const int64_t least = farthest * farthest;
     FW_ASSERT(farthest >= 0, "reach %g m", double(reach));
     uint32_t matched = 0;
