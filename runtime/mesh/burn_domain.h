@@ -163,21 +163,20 @@ struct BurnDomain {
         FW_ASSERT(tile < tileCount(), "%u of %u tiles", tile, tileCount());
         return {tile / tilesX * kTileSide * width + tile % tilesX * kTileSide, width};
     }
-};
-
-// The k-th in the ring of a real texel, or kNone.
-inline uint32_t ringOf(const BurnDomain& domain, uint32_t texel, uint32_t k) noexcept {
-    FW_ASSERT(k < 8 && domain.real(texel), "slot %u of texel %u", k, texel);
-    if (domain.texels[texel].materialFlags & kTexelRim) {
-        const TileStatic& tile = domain.tiles[domain.tileOf(texel)];
-        const uint32_t record = tile.recordOf(domain.laneOf(texel));
-        FW_ASSERT(size_t(record) * 8 + k < domain.links.size(), "record %u", record);
-        return domain.links[size_t(record) * 8 + k];
+    // The k-th in the ring of a real texel: from the image, or from a rim texel's link record; or
+    // kNone.
+    [[nodiscard]] uint32_t ringOf(uint32_t texel, uint32_t k) const noexcept {
+        FW_ASSERT(k < 8 && real(texel), "slot %u of texel %u", k, texel);
+        if (texels[texel].materialFlags & kTexelRim) {
+            const size_t record = tiles[tileOf(texel)].recordOf(laneOf(texel));
+            FW_ASSERT(record * 8 + k < links.size(), "record %zu", record);
+            return links[record * 8 + k];
+        }
+        const int other = int(texel) + kRingY[k] * int(width) + kRingX[k];
+        FW_ASSERT(other >= 0 && other < int(texelCount()), "texel %d", other);
+        return uint32_t(other);
     }
-    const int other = int(texel) + kRingY[k] * int(domain.width) + kRingX[k];
-    FW_ASSERT(other >= 0 && other < int(domain.texelCount()), "texel %d", other);
-    return uint32_t(other);
-}
+};
 
 // Calls visit(texel) or visit(texel, lane) for the real texels of a tile, in order.
 template <class Visit>

@@ -163,7 +163,7 @@ void checkFront(const BurnDomain& d) {
                     "The normal of texel %u of the cooked mesh has length %.3f; the limit is 1.01.",
                     texel, glm::length(n) / 16384);
             for (uint32_t k = 0; k < 8; ++k) {
-                const uint32_t to = ringOf(d, texel, k);
+                const uint32_t to = d.ringOf(texel, k);
                 if (to == kNone) continue;
                 const glm::dvec3 link(d.texels[texel].units() - d.texels[to].units());
                 if (glm::dot(link, link) > kLongest * kLongest)

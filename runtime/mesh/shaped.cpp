@@ -30,7 +30,7 @@ void measure(const Places& places, BurnDomain& out) {
         const glm::dvec3 here = places.at(i);
         double side[2] = {};
         for (uint32_t k = 0; k < 8; ++k) {
-            const uint32_t other = ringOf(from, i, k);
+            const uint32_t other = from.ringOf(i, k);
             if (other == kNone || !from.real(other)) continue;
             const double length = glm::length(places.at(other) - here);
             longest = std::max(longest, length);
