@@ -1,7 +1,7 @@
 // Appearance of each material preset while it burns: the rows of the look table that shaders read.
 // Tuned by eye on lit pictures. Cosmetic.
 #pragma once
-#include "mesh/refine/roughen.h"
+#include "mesh/refine/model.h"
 #include "shared/look.h"
 
 #include <cstdint>

@@ -18,7 +18,7 @@ constexpr uint32_t kMaterials = gpu::kMaterialsPerObject;
 
 struct BurnableMesh {
     Pose pose;                   // of the stretched mesh
-    float shape[3] = {1, 1, 1};  // stretch of the mesh at creation, see mesh/shaped.h
+    float shape[3] = {1, 1, 1};  // stretch of the mesh at creation, see mesh::shaped
     std::array<FwMaterialDef, kMaterials> materials{};  // by triangle material
     uint32_t materialMask = 0;  // bit i: materials[i] is set; the others cannot burn
     uint32_t flags = 0;         // FwBurnableFlags

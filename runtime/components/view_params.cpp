@@ -5,6 +5,8 @@
 #include "core/assert.h"
 #include "volume/curve.h"
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +16,8 @@ using glm::vec3;
 using gpu::vec4;
 
 gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noexcept {
-    const glm::mat4 toView = volume::matrixOf(view.view),
-                    projection = volume::matrixOf(view.projection);
+    const glm::mat4 toView = glm::make_mat4(view.view),
+                    projection = glm::make_mat4(view.projection);
     const glm::mat3 rotation(toView);  // rigid: the inverse is the transpose
     const vec3 eye = -(glm::transpose(rotation) * vec3(toView[3]));
     const glm::mat4 clip = projection * glm::mat4(rotation);

@@ -4,7 +4,6 @@
 #pragma once
 #include "mesh/deform/model.h"
 #include "mesh/refine/model.h"
-#include "mesh/refine/roughen.h"
 #include "shared/burn.h"
 #include "shared/exchange.h"
 #include "shared/field.h"

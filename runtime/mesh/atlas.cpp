@@ -34,10 +34,12 @@ double edgeDensity(double metres, uint32_t maxSide) {
     return std::max(kEdgesPerTexel * maxSide * maxSide, kEdgesAtLeast) / metres;
 }
 
-double uvEdges(const Surface& surface) {
+// The length of all triangles' edges, between `corners` of each.
+template <class Corners>
+double edgesOf(const Surface& surface, Corners corners) {
     double sum = 0;
     for (const Triangle& t : surface.triangles)
-        for (int e = 0; e < 3; ++e) sum += glm::length(t.uv[(e + 1) % 3] - t.uv[e]);
+        for (int e = 0; e < 3; ++e) sum += glm::length((t.*corners)[(e + 1) % 3] - (t.*corners)[e]);
     return sum;
 }
 
@@ -55,8 +57,9 @@ AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     plan.density = std::min(input.texelsPerMetre, side / std::max(size.x, size.y));
     // A thousand overlapping sheets would be rasterised a thousand times.
     if (input.trustUvs)
-        plan.density = std::min({plan.density, side * std::sqrt(kTrustedCover / surface.area),
-                                 edgeDensity(uvEdges(surface) * perUnit, input.maxSide)});
+        plan.density =
+            std::min({plan.density, side * std::sqrt(kTrustedCover / surface.area),
+                      edgeDensity(edgesOf(surface, &Triangle::uv) * perUnit, input.maxSide)});
     plan.width = roundUp8(size.x * plan.density + 2 * kMargin);
     plan.height = roundUp8(size.y * plan.density + 2 * kMargin);
     const double scale = perUnit * plan.density;
@@ -65,8 +68,7 @@ AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     return plan;
 }
 
-bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& plan,
-               std::pmr::memory_resource* memory) {
+bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& plan) {
     const double meanArea = 1 / (plan.density * plan.density);
     double badArea = 0, texels = 0;
     Extent2 extent;
@@ -79,9 +81,9 @@ bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& 
     const bool wasteful = plan.density < 0.5 * input.texelsPerMetre && fill < 0.25;
     // UVs of more area than their box overlap: a tiled terrain would take minutes to test.
     const bool stacked = texels > (1 + kOverlapLimit) * extent.size().x * extent.size().y;
-    const bool crowded = edgeDensity(uvEdges(surface), input.maxSide) < 1;
+    const bool crowded = edgeDensity(edgesOf(surface, &Triangle::uv), input.maxSide) < 1;
     if (badArea > kBadAreaLimit * surface.area || wasteful || stacked || crowded) return false;
-    Coverage coverage(memory);
+    Coverage coverage(surface.memory);
     coverage.clear(plan.width, plan.height);
     double conflicts = 0;
     for (const Triangle& t : surface.triangles) {
@@ -93,10 +95,9 @@ bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& 
 
 // Brings every island to the surface's own scale (uv in metres), marks triangles that cannot stay
 // in it with chart kNone and numbers the islands that remain. Returns their count.
-uint32_t keepIslands(Surface& surface, double density, double longest,
-                     std::pmr::memory_resource* memory) {
-    const Groups groups = groupByChart(surface, surface.chartCount, memory);
-    Coverage coverage(memory);
+uint32_t keepIslands(Surface& surface, double density, double longest) {
+    const Groups groups = groupByChart(surface, surface.chartCount);
+    Coverage coverage(surface.memory);
     uint32_t kept = 0;
     for (uint32_t island = 0; island < surface.chartCount; ++island) {
         const auto members = groups.of(island);
@@ -157,37 +158,35 @@ uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
     return conflicts;
 }
 
-Groups groupByChart(const Surface& surface, uint32_t charts, std::pmr::memory_resource* memory) {
-    return groupBy(charts, uint32_t(surface.triangles.size()), memory,
+Groups groupByChart(const Surface& surface, uint32_t charts) {
+    return groupBy(charts, uint32_t(surface.triangles.size()), surface.memory,
                    [&](uint32_t i) { return surface.triangles[i].chart; });
 }
 
-AtlasPlan packAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory) {
+AtlasPlan packAtlas(Surface& surface, const BakeInput& input) {
     double uvAreaSum = 0;
     for (const Triangle& t : surface.triangles) uvAreaSum += std::abs(uvArea(t));
     const bool hasUv = !input.uvs.empty() && uvAreaSum > 1e-18;
     if (hasUv) {
         const AtlasPlan own = scaleOwn(surface, input, uvAreaSum);
-        if (input.trustUvs || ownIsGood(surface, input, own, memory)) return own;
+        if (input.trustUvs || ownIsGood(surface, input, own)) return own;
     }
     // The tests use a density that the atlas can hold.
     const double side = double(input.maxSide & ~7u);
-    double edges = 0;  // m
-    for (const Triangle& t : surface.triangles)
-        for (int e = 0; e < 3; ++e) edges += glm::length(t.position[(e + 1) % 3] - t.position[e]);
+    const double edges = edgesOf(surface, &Triangle::position);  // m
     const double asked = std::min(input.texelsPerMetre, edgeDensity(edges, input.maxSide));
     const double density = std::min(asked, side / std::sqrt(surface.area));
     const double texels = surface.area * density * density;
     const double longest = std::clamp(1.5 * std::sqrt(texels), 32.0, side) / density * 0.95;
 
-    pairEdges(surface, hasUv, memory);
-    const uint32_t kept = hasUv ? keepIslands(surface, density, longest, memory) : 0;
-    std::pmr::vector<uint32_t> pool(memory);
+    pairEdges(surface, hasUv);
+    const uint32_t kept = hasUv ? keepIslands(surface, density, longest) : 0;
+    std::pmr::vector<uint32_t> pool(surface.memory);
     for (uint32_t i = 0; i < surface.triangles.size(); ++i)
         if (!hasUv || surface.triangles[i].chart == kNone) pool.push_back(i);
     const uint32_t recharted = uint32_t(pool.size());
-    const uint32_t charts = growCharts(surface, pool, kept, density, longest, memory);
-    AtlasPlan plan = packCharts(surface, charts, asked, input.maxSide, memory);
+    const uint32_t charts = growCharts(surface, pool, kept, density, longest);
+    AtlasPlan plan = packCharts(surface, charts, asked, input.maxSide);
     FW_ASSERT(plan.width % kTileSide == 0 && plan.height % kTileSide == 0, "%u x %u texels",
               plan.width, plan.height);
     plan.recharted = recharted;

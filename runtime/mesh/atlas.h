@@ -13,7 +13,7 @@ struct AtlasPlan {
 };
 
 // Sets uv (texels) of every triangle. Neighbours must be paired again afterwards.
-AtlasPlan packAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory);
+AtlasPlan packAtlas(Surface& surface, const BakeInput& input);
 
 // Strict uniqueness test by rasterising: a texel centre well inside two triangles is a conflict.
 class Coverage {
@@ -34,18 +34,17 @@ class Coverage {
 };
 
 // Triangles by chart; every triangle has one.
-Groups groupByChart(const Surface& surface, uint32_t charts, std::pmr::memory_resource* memory);
+Groups groupByChart(const Surface& surface, uint32_t charts);
 
 // Cuts the triangles of `pool` into flat charts numbered from `firstChart`; sets chart and uv in
 // metres. No texel of a chart is stretched more than 2 : 1, none lies twice. `density` is texels
 // per metre for the tests; `longest` m is the longest side a chart should have. Returns the number
 // of charts after these.
 uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t firstChart,
-                    double density, double longest, std::pmr::memory_resource* memory);
+                    double density, double longest);
 
 // Places charts (uv in metres) with at least two free texels between them; sets uv in texels.
 // Lowers the density until all fit. Throws core::Error if they never do.
-AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t maxSide,
-                     std::pmr::memory_resource* memory);
+AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t maxSide);
 
 }  // namespace fw::mesh

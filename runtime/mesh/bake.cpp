@@ -1,7 +1,6 @@
 // The bake as a list of steps, and its last step: working doubles to integer texels.
 #include "mesh/bake.h"
 
-#include "mesh/atlas.h"
 #include "mesh/texels.h"
 
 #include <chrono>
@@ -42,8 +41,8 @@ void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain)
 }
 
 // Texel sides and stretch over the real texels.
-void measureShapes(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory) {
-    std::pmr::vector<double> shorter(memory), aspects(memory);
+void measureShapes(const TexelGrid& grid, BurnDomain& domain) {
+    std::pmr::vector<double> shorter(grid.memory), aspects(grid.memory);
     for (uint32_t i = 0; i < grid.count(); ++i) {
         if (!grid.real(i)) continue;
         domain.report.texelArea += grid.area[i];
@@ -65,10 +64,7 @@ void fillHeader(const BakeInput& input, const Surface& surface, const AtlasPlan&
                 const TexelGrid& grid, BurnDomain& domain) {
     FW_ASSERT(plan.width == grid.width && plan.height == grid.height, "%u x %u and %u x %u texels",
               plan.width, plan.height, grid.width, grid.height);
-    domain.width = plan.width;
-    domain.height = plan.height;
-    domain.tilesX = plan.width / kTileSide;
-    domain.tilesY = plan.height / kTileSide;
+    domain.setSize(plan.width, plan.height);
     domain.texelSide = float(grid.side);
     domain.linkMax = float(grid.linkMax);
     for (int k = 0; k < 3; ++k) {
@@ -82,10 +78,6 @@ void fillHeader(const BakeInput& input, const Surface& surface, const AtlasPlan&
     report.vertices = uint32_t(input.positions.size() / 3);
     report.triangles = uint32_t(surface.triangles.size());
     report.charts = surface.chartCount;
-    report.degenerate = surface.degenerate;
-    report.openEdges = surface.openEdges;
-    report.nonManifoldEdges = surface.nonManifoldEdges;
-    report.seamEdges = surface.seamEdges;
     report.usedOwnUv = plan.ownUv;
     report.rechartedTriangles = plan.recharted;
 }
@@ -97,20 +89,20 @@ BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory) {
     validate(input);
     BurnDomain domain(memory);
     Surface surface = collectSurface(input, 0.5 / (input.texelsPerMetre * kUnitsPerTexel), memory);
-    const AtlasPlan plan = packAtlas(surface, input, memory);
-    pairEdges(surface, true, memory);
-    TexelGrid grid =
-        rasterise(surface, plan.width, plan.height, plan.density, domain.report, memory);
-    linkTexels(surface, grid, domain.report, memory);
+    const AtlasPlan plan = packAtlas(surface, input);
+    pairEdges(surface, true);
+    domain.report = surface.report;
+    TexelGrid grid = rasterise(surface, plan, domain.report);
+    linkTexels(surface, grid, domain.report);
     fillHeader(input, surface, plan, grid, domain);
     quantise(surface, grid, domain);
-    measureShapes(grid, domain, memory);
-    buildTiles(grid, domain, memory);
+    measureShapes(grid, domain);
+    buildTiles(grid, domain);
     buildTileBounds(domain);
-    linkParts(domain, memory);
-    bakeThickness(surface, grid, domain.thickness, memory);
+    linkParts(domain);
+    bakeThickness(surface, grid, domain.thickness);
     bakeSlowness(input, grid, surface.low, surface.extent, domain.slowness);
-    buildDrawn(input, surface, domain, memory);
+    buildDrawn(input, surface, domain);
     domain.report.milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return domain;

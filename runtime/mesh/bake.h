@@ -46,4 +46,19 @@ void texelWeights(const BurnDomain& domain, uint32_t texel, float (&weights)[3])
 // Nearest real texel, or kNone when farther than maxDistance m.
 uint32_t nearestTexel(const BurnDomain& domain, const float point[3], float maxDistance);
 
+// Matches the texels of two meshes of the same shape (levels of detail): each texel of one takes
+// its burn from a texel of the other.
+// out, by texel of `to`: the nearest texel of `from` in object space, with preference for texels
+// that face the same way. kNone: none is within `reach` m, or the texel is not real. Returns the
+// number of matches.
+uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
+                     std::pmr::vector<uint32_t>& out);
+
+// A burn domain stretched along its axes, or mirrored, with the same atlas, links and tiles. For
+// objects with a non-uniform scale.
+// `shape`: factor per object axis; a negative x mirrors. Positions, normals, areas, thickness and
+// lengths are those of the stretched mesh; detail coordinates stay.
+BurnDomain shaped(const BurnDomain& domain, const float shape[3],
+                  std::pmr::memory_resource* memory);
+
 }  // namespace fw::mesh

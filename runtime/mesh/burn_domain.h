@@ -34,25 +34,16 @@ struct TexelPosition {  // 8 bytes, RGBA16_UINT: rest position in units of `quan
     [[nodiscard]] glm::ivec3 units() const noexcept { return {x, y, z}; }
 };
 
-struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
-    uint32_t seamMaskLow = 0;  // texels of this tile that some other tile reads through a link
-    uint32_t seamMaskHigh = 0;
-    uint32_t dependentStart = 0;  // into BurnDomain::dependents
-    uint32_t dependentCount = 0;
-    uint32_t rimMaskLow = 0;  // texels of this tile with a link record
-    uint32_t rimMaskHigh = 0;
+struct TileStatic {         // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
+    uint64_t seamMask = 0;  // texels of this tile that some other tile reads through a link
+    uint32_t dependentStart = 0, dependentCount = 0;  // into BurnDomain::dependents
+    uint64_t rimMask = 0;                             // texels of this tile with a link record
     uint32_t rimBase = 0;  // record of a rim texel = rimBase + popcount(rimMask below its lane)
     uint32_t reserved = 0;
-    [[nodiscard]] uint64_t seamMask() const noexcept {
-        return uint64_t(seamMaskHigh) << 32 | seamMaskLow;
-    }
-    [[nodiscard]] uint64_t rimMask() const noexcept {
-        return uint64_t(rimMaskHigh) << 32 | rimMaskLow;
-    }
     // The link record of a rim texel.
     [[nodiscard]] uint32_t recordOf(uint32_t lane) const noexcept {
-        FW_ASSERT(lane < 64 && (rimMask() >> lane & 1) != 0, "lane %u is no rim texel", lane);
-        return rimBase + uint32_t(std::popcount(rimMask() & ((uint64_t(1) << lane) - 1)));
+        FW_ASSERT(lane < 64 && (rimMask >> lane & 1) != 0, "lane %u is no rim texel", lane);
+        return rimBase + uint32_t(std::popcount(rimMask & ((uint64_t(1) << lane) - 1)));
     }
 };
 
@@ -139,6 +130,10 @@ struct BurnDomain {
         return report.realTexels ? report.texelArea / double(report.realTexels)
                                  : double(texelSide) * double(texelSide);
     }
+    void setSize(uint32_t columns, uint32_t rows) noexcept {  // texels, multiples of 8
+        width = columns, height = rows;
+        tilesX = columns / kTileSide, tilesY = rows / kTileSide;
+    }
     [[nodiscard]] uint32_t texelCount() const noexcept { return width * height; }
     // m, object space, at rest.
     [[nodiscard]] glm::dvec3 placeOf(uint32_t texel) const noexcept {
@@ -167,6 +162,19 @@ struct BurnDomain {
     [[nodiscard]] TileTexels texelsOf(uint32_t tile) const noexcept {
         FW_ASSERT(tile < tileCount(), "%u of %u tiles", tile, tileCount());
         return {tile / tilesX * kTileSide * width + tile % tilesX * kTileSide, width};
+    }
+    // The k-th in the ring of a real texel: from the image, or from a rim texel's link record; or
+    // kNone.
+    [[nodiscard]] uint32_t ringOf(uint32_t texel, uint32_t k) const noexcept {
+        FW_ASSERT(k < 8 && real(texel), "slot %u of texel %u", k, texel);
+        if (texels[texel].materialFlags & kTexelRim) {
+            const size_t record = tiles[tileOf(texel)].recordOf(laneOf(texel));
+            FW_ASSERT(record * 8 + k < links.size(), "record %zu", record);
+            return links[record * 8 + k];
+        }
+        const int other = int(texel) + kRingY[k] * int(width) + kRingX[k];
+        FW_ASSERT(other >= 0 && other < int(texelCount()), "texel %d", other);
+        return uint32_t(other);
     }
 };
 

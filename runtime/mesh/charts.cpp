@@ -32,12 +32,10 @@ struct Candidate {
 };
 
 // Two rounds of averaging over edge neighbours: scanned surfaces are rough.
-void smoothNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& smooth,
-                   std::pmr::memory_resource* memory) {
+std::pmr::vector<glm::dvec3> smoothNormals(const Surface& surface) {
     const auto& triangles = surface.triangles;
-    std::pmr::vector<glm::dvec3> next(triangles.size(), memory);
-    smooth.resize(triangles.size());
-    for (size_t i = 0; i < triangles.size(); ++i) smooth[i] = triangles[i].normal;
+    std::pmr::vector<glm::dvec3> smooth(surface.memory), next(triangles.size(), surface.memory);
+    for (const Triangle& t : triangles) smooth.push_back(t.normal);
     for (int round = 0; round < 2; ++round) {
         for (size_t i = 0; i < triangles.size(); ++i) {
             glm::dvec3 sum = smooth[i] * triangles[i].area;
@@ -47,20 +45,17 @@ void smoothNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& smooth,
         }
         smooth.swap(next);
     }
+    return smooth;
 }
 
 class Grower {
  public:
-    Grower(Surface& surface, std::pmr::memory_resource* memory)
-        : triangles_(surface.triangles), memory_(memory) {
-        inPool_.resize(surface.triangles.size());
-        smoothNormals(surface, smooth_, memory);
-    }
+    explicit Grower(Surface& surface) : surface_(surface) {}
 
     // Gives every triangle of the pool a chart number, from `first` on. Returns the next number.
     uint32_t grow(std::span<const uint32_t> pool, uint32_t first, double smallArea) {
         charts_.clear();
-        std::fill(inPool_.begin(), inPool_.end(), uint8_t(0));
+        inPool_.assign(triangles_.size(), 0);
         for (uint32_t i : pool) {
             inPool_[i] = 1;
             triangles_[i].chart = kNone;
@@ -130,12 +125,12 @@ class Grower {
         }
     }
 
-    std::pmr::vector<Triangle>& triangles_;
-    std::pmr::memory_resource* memory_;
-    std::pmr::vector<glm::dvec3> smooth_{memory_};
-    std::pmr::vector<Candidate> heap_{memory_};
-    std::pmr::vector<Chart> charts_{memory_};
-    std::pmr::vector<uint8_t> inPool_{memory_};
+    Surface& surface_;
+    std::pmr::vector<Triangle>& triangles_ = surface_.triangles;
+    std::pmr::vector<glm::dvec3> smooth_ = smoothNormals(surface_);
+    std::pmr::vector<Candidate> heap_{surface_.memory};
+    std::pmr::vector<Chart> charts_{surface_.memory};
+    std::pmr::vector<uint8_t> inPool_{surface_.memory};
 };
 
 // Flattens chart members onto the plane of their mean normal, at the surface's own scale. A
@@ -211,18 +206,18 @@ void dropOverlaps(Surface& surface, std::span<const uint32_t> members, double de
 }  // namespace
 
 uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t firstChart,
-                    double density, double longest, std::pmr::memory_resource* memory) {
+                    double density, double longest) {
     FW_ASSERT(density > 0 && longest > 0, "%g per m, %g m", density, longest);
     if (pool.empty()) return firstChart;
-    Grower grower(surface, memory);
-    Coverage coverage(memory);
+    Grower grower(surface);
+    Coverage coverage(surface.memory);
     // Triangles that a round throws out (too steep, overlapping) form charts in the next.
     for (int round = 0; round < kRounds && !pool.empty(); ++round) {
         uint32_t next = grower.grow(pool, firstChart, kSmallTexels / (density * density));
         const uint32_t grown = next - firstChart;
         // Members are in the pool's order: the pool is sorted.
         FW_ASSERT(std::is_sorted(pool.begin(), pool.end()));
-        Groups groups = groupBy(grown, uint32_t(pool.size()), memory, [&](uint32_t i) {
+        Groups groups = groupBy(grown, uint32_t(pool.size()), surface.memory, [&](uint32_t i) {
             return surface.triangles[pool[i]].chart - firstChart;
         });
         for (uint32_t& item : groups.items) item = pool[item];

@@ -4,7 +4,6 @@
 // The reader trusts nothing: it also refuses a file with a right checksum and wrong indices.
 #include "core/hash.h"
 #include "core/stream.h"
-#include "mesh/ring.h"
 #include "mesh/texels.h"
 #include "shared/front.h"
 
@@ -35,8 +34,7 @@ template <class T>
 concept Vertex = std::is_same_v<std::remove_const_t<T>, RenderVertex>;
 void record(auto& s, Texel auto& t) { s.numbers(t.x, t.y, t.z, t.materialFlags); }
 void record(auto& s, Tile auto& t) {
-    s.numbers(t.seamMaskLow, t.seamMaskHigh, t.dependentStart, t.dependentCount, t.rimMaskLow,
-              t.rimMaskHigh, t.rimBase, t.reserved);
+    s.numbers(t.seamMask, t.dependentStart, t.dependentCount, t.rimMask, t.rimBase, t.reserved);
 }
 void record(auto& s, Vertex auto& v) {
     s.numbers(v.position, v.normal, v.atlasUv, v.textureUv, v.detail, v.tint, v.material);
@@ -88,13 +86,12 @@ void arrays(Stream& s, auto& d, const Counts& counts) {
 
 void requireBelow(size_t limit, size_t value, const char* what, size_t element) {
     if (value >= limit)
-        core::fail(FW_ERROR_BAD_DATA, "%s %zu of the cooked mesh is %zu; it must be less than %zu.",
-                   what, element, value, limit);
+        core::failData("%s %zu of the cooked mesh is %zu; it must be less than %zu.", what, element,
+                       value, limit);
 }
 void require(bool holds, const char* what, size_t element) {
     if (!holds)
-        core::fail(FW_ERROR_BAD_DATA, "%s (element %zu) of the cooked mesh is not consistent.",
-                   what, element);
+        core::failData("%s (element %zu) of the cooked mesh is not consistent.", what, element);
 }
 bool usable(float v) { return std::isfinite(v) && std::abs(v) < 1e7f; }
 
@@ -124,7 +121,7 @@ void checkTiles(const BurnDomain& d) {
     uint32_t records = 0, dependents = 0;
     for (uint32_t t = 0; t < d.tileCount(); ++t) {
         const TileStatic& tile = d.tiles[t];
-        const uint64_t rim = tile.rimMask();
+        const uint64_t rim = tile.rimMask;
         require(tile.rimBase == records, "First link record of a tile", t);
         require(tile.dependentStart == dependents &&
                     tile.dependentCount <= d.dependents.size() - dependents,
@@ -162,30 +159,27 @@ void checkFront(const BurnDomain& d) {
             area += double(d.areas[texel]);
             const glm::dvec3 n(gpu::decodeNormal(d.normals[texel]));
             if (glm::length(n) > kUnit)
-                core::fail(
-                    FW_ERROR_BAD_DATA,
+                core::failData(
                     "The normal of texel %u of the cooked mesh has length %.3f; the limit is 1.01.",
                     texel, glm::length(n) / 16384);
             for (uint32_t k = 0; k < 8; ++k) {
-                const uint32_t to = ringOf(d, texel, k);
+                const uint32_t to = d.ringOf(texel, k);
                 if (to == kNone) continue;
                 const glm::dvec3 link(d.texels[texel].units() - d.texels[to].units());
                 if (glm::dot(link, link) > kLongest * kLongest)
-                    core::fail(FW_ERROR_BAD_DATA,
-                               "Positions of texels %u and %u of the cooked mesh, which are "
-                               "neighbours, are %.0f units apart; the limit is %.0f. Cook the mesh "
-                               "again.",
-                               texel, to, glm::length(link), kLongest);
+                    core::failData(
+                        "Positions of texels %u and %u of the cooked mesh, which are "
+                        "neighbours, are %.0f units apart; the limit is %.0f. Cook the mesh "
+                        "again.",
+                        texel, to, glm::length(link), kLongest);
             }
         });
     if (real != d.report.realTexels)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh has %u texels of the surface; its report says %u.", real,
-                   d.report.realTexels);
+        core::failData("The cooked mesh has %u texels of the surface; its report says %u.", real,
+                       d.report.realTexels);
     if (!(std::abs(area - d.report.texelArea) <= 0.001 * area))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The texels of the cooked mesh have %g m^2 in all; its report says %g.", area,
-                   d.report.texelArea);
+        core::failData("The texels of the cooked mesh have %g m^2 in all; its report says %g.",
+                       area, d.report.texelArea);
 }
 
 void checkDrawn(const BurnDomain& d) {
@@ -206,10 +200,10 @@ void checkDrawn(const BurnDomain& d) {
 void checkScalars(const BurnDomain& d) {
     for (uint32_t side : {d.width, d.height})
         if (side < 8 || side > 4096 || side % 8 != 0)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The cooked mesh's atlas is %u x %u texels; sides must be multiples of 8 in "
-                       "[8, 4096].",
-                       d.width, d.height);
+            core::failData(
+                "The cooked mesh's atlas is %u x %u texels; sides must be multiples of 8 in "
+                "[8, 4096].",
+                d.width, d.height);
     const auto size = [](float v) { return v > 0 && usable(v); };
     require(size(d.quantum * 65535) && size(d.texelSide) && size(d.linkShort), "Size of a texel",
             0);
@@ -228,25 +222,23 @@ uint64_t checksumOf(std::span<const std::byte> file) {
     return hashBytes(file.subspan(kHeaderBytes), hashBytes(file.first(kChecksumAt)));
 }
 
-uint64_t hashMore(uint64_t hash, const void* data, size_t bytes) {
-    const uint64_t size = bytes;
-    hash = hashBytes(std::as_bytes(std::span(&size, 1)), hash);
-    return hashBytes({static_cast<const std::byte*>(data), bytes}, hash);
-}
-
 }  // namespace
 
 uint64_t bakeKey(const BakeInput& input) noexcept {
     uint64_t hash = core::kFnvOffset;
-    const auto add = [&](const auto& array) {
-        hash = hashMore(hash, array.data(), array.size_bytes());
+    const auto add = [&](const void* data, uint64_t bytes) {
+        hash = hashBytes(std::as_bytes(std::span(&bytes, 1)), hash);
+        hash = hashBytes({static_cast<const std::byte*>(data), bytes}, hash);
     };
-    const auto addValue = [&](auto value) { hash = hashMore(hash, &value, sizeof value); };
-    addValue(kBakeVersion);
-    add(input.positions), add(input.normals), add(input.uvs), add(input.details);
-    add(input.tints), add(input.indices), add(input.triangleMaterials);
-    addValue(input.texelsPerMetre), addValue(input.maxSide), addValue(input.noiseAmplitude);
-    addValue(input.noiseFeature), addValue(input.noiseSeed), addValue(uint8_t(input.trustUvs));
+    const auto addArrays = [&](const auto&... spans) {
+        (add(spans.data(), spans.size_bytes()), ...);
+    };
+    const auto addValues = [&](const auto&... values) { (add(&values, sizeof values), ...); };
+    addValues(kBakeVersion);
+    addArrays(input.positions, input.normals, input.uvs, input.details, input.tints, input.indices,
+              input.triangleMaterials);
+    addValues(input.texelsPerMetre, input.maxSide, input.noiseAmplitude, input.noiseFeature,
+              input.noiseSeed, uint8_t(input.trustUvs));
     return hash;
 }
 
@@ -268,20 +260,18 @@ std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
 
 uint64_t cookedKey(std::span<const std::byte> bytes) {
     if (bytes.size() < kHeaderBytes)
-        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh has %zu bytes; its header alone has %zu.",
-                   bytes.size(), kHeaderBytes);
+        core::failData("The cooked mesh has %zu bytes; its header alone has %zu.", bytes.size(),
+                       kHeaderBytes);
     Reader header(bytes.first(kHeaderBytes), kWhat);
     uint32_t magic = 0, version = 0;
     uint64_t key = 0;
     header.numbers(magic, version, key);
     if (magic != kMagic)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh begins with 0x%08X; 0x%08X (\"FWBD\") is expected.", magic,
-                   kMagic);
+        core::failData("The cooked mesh begins with 0x%08X; 0x%08X (\"FWBD\") is expected.", magic,
+                       kMagic);
     if (version != kVersion)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh has format version %u; this library reads version %u.", version,
-                   kVersion);
+        core::failData("The cooked mesh has format version %u; this library reads version %u.",
+                       version, kVersion);
     return key;
 }
 
@@ -292,25 +282,22 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     header.numbers(size, checksum);
     const auto payload = bytes.subspan(kHeaderBytes);
     if (size != payload.size())
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh has %zu bytes of payload; its header says %zu.", payload.size(),
-                   size_t(size));
+        core::failData("The cooked mesh has %zu bytes of payload; its header says %zu.",
+                       payload.size(), size_t(size));
     if (const uint64_t found = checksumOf(bytes); found != checksum)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh's checksum is 0x%016zX; its header says 0x%016zX.",
-                   size_t(found), size_t(checksum));
+        core::failData("The cooked mesh's checksum is 0x%016zX; its header says 0x%016zX.",
+                       size_t(found), size_t(checksum));
 
     BurnDomain domain(memory);
     Reader reader(payload, kWhat);
     Counts counts;
     scalars(reader, domain, counts);
     checkScalars(domain);
-    domain.tilesX = domain.width / kTileSide;
-    domain.tilesY = domain.height / kTileSide;
+    domain.setSize(domain.width, domain.height);
     // Sizes before memory: the arrays must need exactly the bytes that are left.
     if (const uint64_t expected = arrayBytes(domain, counts); expected != reader.left())
-        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh's arrays need %zu bytes; it has %zu.",
-                   size_t(expected), reader.left());
+        core::failData("The cooked mesh's arrays need %zu bytes; it has %zu.", size_t(expected),
+                       reader.left());
     require(counts.linkWords % 8 == 0 && counts.indices % 3 == 0, "Number of links or indices", 0);
     arrays(reader, domain, counts);
     checkTexels(domain);
@@ -318,7 +305,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     checkFront(domain);
     checkDrawn(domain);
     buildTileBounds(domain);
-    linkParts(domain, memory);
+    linkParts(domain);
     return domain;
 }
 

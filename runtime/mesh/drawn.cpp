@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/type_ptr.hpp>
 #include <numeric>
 
 namespace fw::mesh {
@@ -12,10 +13,9 @@ constexpr double kCreaseCosine = 0.5;  // 60 degrees
 constexpr int kChainLimit = 256;
 
 // Normal of every corner: shared over edges that bend less than the crease angle.
-void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normals,
-                    std::pmr::memory_resource* memory) {
+std::pmr::vector<glm::dvec3> computeNormals(const Surface& surface) {
     const auto& triangles = surface.triangles;
-    std::pmr::vector<uint32_t> parent(triangles.size() * 3, memory);
+    std::pmr::vector<uint32_t> parent(triangles.size() * 3, surface.memory);
     std::iota(parent.begin(), parent.end(), 0u);
     for (uint32_t i = 0; i < triangles.size(); ++i)
         for (uint32_t e = 0; e < 3; ++e) {
@@ -27,7 +27,7 @@ void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normal
                     if (triangles[n].point[other] == triangles[i].point[corner])
                         parent[rootOf(parent, i * 3 + corner)] = rootOf(parent, n * 3 + other);
         }
-    normals.assign(parent.size(), glm::dvec3(0));
+    std::pmr::vector<glm::dvec3> normals(parent.size(), glm::dvec3(0), surface.memory);
     for (uint32_t i = 0; i < triangles.size(); ++i)
         for (uint32_t k = 0; k < 3; ++k) {  // weighted by sine of the corner over its edge lengths
             const Triangle& t = triangles[i];
@@ -42,6 +42,7 @@ void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normal
     }
     for (uint32_t i = 0; i < normals.size(); ++i)
         normals[i] = unitOr(normals[i], triangles[i / 3].normal);
+    return normals;
 }
 
 }  // namespace
@@ -55,12 +56,12 @@ uint32_t packNormal(glm::dvec3 normal) {
            (field(normal.z, 511) & 0x3FFu) << 22;
 }
 
-void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain,
-                std::pmr::memory_resource* memory) {
-    std::pmr::vector<glm::dvec3> computed(memory);
-    if (input.normals.empty()) computeNormals(surface, computed, memory);
+void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain) {
+    std::pmr::vector<glm::dvec3> computed(surface.memory);
+    if (input.normals.empty()) computed = computeNormals(surface);
     // Per input vertex: a chain of the corners made of it.
-    std::pmr::vector<uint32_t> first(input.positions.size() / 3, kNone, memory), next(memory);
+    std::pmr::vector<uint32_t> first(input.positions.size() / 3, kNone, surface.memory);
+    std::pmr::vector<uint32_t> next(surface.memory);
     domain.indices.reserve(surface.triangles.size() * 3);
     for (uint32_t i = 0; i < surface.triangles.size(); ++i) {
         const Triangle& t = surface.triangles[i];
@@ -70,8 +71,7 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
             RenderVertex v;
             glm::dvec3 normal = input.normals.empty() ? computed[i * 3 + k] : t.normal;
             if (!input.normals.empty()) {
-                const float* const n = &input.normals[source * 3];
-                const glm::dvec3 given(n[0], n[1], n[2]);
+                const glm::dvec3 given(glm::make_vec3(&input.normals[source * 3]));
                 const double length = glm::length(given);
                 if (length > 1e-12) normal = given / length;
             }

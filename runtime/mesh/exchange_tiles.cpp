@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/ext/vector_int3_sized.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace fw::mesh {
@@ -11,20 +13,15 @@ namespace {
 constexpr float kSourceSide = 0.25f;  // m: smaller objects are one source, larger ones a grid of 4
 
 struct TileSum {
-    uint64_t position[3] = {};
-    int64_t normal[3] = {};
+    glm::i64vec3 position{0}, normal{0};
     uint32_t texels = 0, materials[8] = {};
 };
 
 TileSum sumTile(const BurnDomain& domain, uint32_t tile) noexcept {
     TileSum sum;
     eachTexel(domain, tile, [&](uint32_t texel) {
-        const glm::ivec3 p = domain.texels[texel].units();
-        const gpu::ivec3 n = gpu::decodeNormal(domain.normals[texel]);
-        for (int i = 0; i < 3; ++i) {
-            sum.position[i] += uint64_t(p[i]);
-            sum.normal[i] += n[i];
-        }
+        sum.position += glm::i64vec3(domain.texels[texel].units());
+        sum.normal += glm::i64vec3(gpu::decodeNormal(domain.normals[texel]));
         ++sum.texels;
         ++sum.materials[domain.texels[texel].materialFlags & 7];
     });
@@ -46,7 +43,7 @@ Grid gridOf(const BurnDomain& domain) noexcept {
     return grid;
 }
 
-uint32_t cellAt(const uint32_t (&middle)[3], const Grid& grid) noexcept {
+uint32_t cellAt(glm::uvec3 middle, const Grid& grid) noexcept {
     FW_ASSERT(grid.sides >= 1 && grid.unit >= 1, "%u cells of %u units", grid.sides, grid.unit);
     uint32_t cell = 0;
     for (int i = 2; i >= 0; --i)
@@ -54,13 +51,12 @@ uint32_t cellAt(const uint32_t (&middle)[3], const Grid& grid) noexcept {
     return cell;
 }
 
-uint32_t packSum(const int64_t (&sum)[3]) noexcept {
-    double size = 0;
-    for (const int64_t s : sum) size += double(s) * double(s);
+uint32_t packSum(glm::dvec3 sum) noexcept {
+    const double size = glm::dot(sum, sum);
     if (!(size > 0)) return 0;
-    const double scale = 1 / std::sqrt(size);
+    const glm::dvec3 unit = sum * (1 / std::sqrt(size));
     const auto part = [&](int i, double one) {
-        return uint32_t(int32_t(std::lround(double(sum[i]) * scale * one)));
+        return uint32_t(int32_t(std::lround(unit[i] * one)));
     };
     return (part(0, 1023) & 0x7FFu) | (part(1, 1023) & 0x7FFu) << 11 |
            (part(2, 511) & 0x3FFu) << 22;
@@ -264,18 +260,15 @@ uint32_t exchangeTiles(const BurnDomain& domain, std::pmr::vector<gpu::ExchangeT
         const TileSum sum = sumTile(domain, tile);
         gpu::ExchangeTile made{};
         if (sum.texels != 0) {
-            uint32_t middle[3];
-            for (int i = 0; i < 3; ++i) middle[i] = uint32_t(sum.position[i] / sum.texels);
+            const glm::uvec3 middle(sum.position / int64_t(sum.texels));
             uint32_t& number = numbers[cellAt(middle, grid)];
             if (number == kNone) number = cells++;
-            const auto most =
-                uint32_t(std::max_element(std::begin(sum.materials), std::end(sum.materials)) -
-                         std::begin(sum.materials));
+            const auto most = uint32_t(std::ranges::max_element(sum.materials) - sum.materials);
             FW_ASSERT(number < gpu::kSourcesPerObject, "%u of %u sources", number,
                       gpu::kSourcesPerObject);
             made.xy = middle[0] | middle[1] << 16;
             made.z = middle[2] | number << 16 | most << 24;
-            made.normal = packSum(sum.normal);
+            made.normal = packSum(glm::dvec3(sum.normal));
             made.texels = sum.texels;
         }
         made.parts = gpu::uvec4(kNone);

@@ -1,7 +1,5 @@
 #include "mesh/hold.h"
 
-#include "mesh/ring.h"
-
 #include <algorithm>
 
 namespace fw::mesh {
@@ -15,7 +13,7 @@ void spread(const BurnDomain& domain, Stack& stack, Joins joins) {
         const uint32_t texel = stack.back();
         stack.pop_back();
         for (uint32_t k = 0; k < 8; ++k) {
-            const uint32_t other = ringOf(domain, texel, k);
+            const uint32_t other = domain.ringOf(texel, k);
             if (other == kNone || !joins(other)) continue;
             FW_ASSERT(other < domain.texelCount(), "%u of %u texels", other, domain.texelCount());
             stack.push_back(other);

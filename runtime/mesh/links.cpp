@@ -90,8 +90,8 @@ Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, 
 // Chart borders in the atlas, by the texels that they pass.
 class Borders {
  public:
-    Borders(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory)
-        : surface_(surface), grid_(grid), pieces_(memory), near_(grid.count(), 0, memory) {
+    Borders(const Surface& surface, const TexelGrid& grid)
+        : surface_(surface), grid_(grid), near_(grid.count(), 0, grid.memory) {
         for (uint32_t i = 0; i < surface.triangles.size(); ++i)
             for (uint32_t e = 0; e < 3; ++e)
                 if (const Triangle& t = surface.triangles[i]; t.neighbour[e] == kNone || t.seam[e])
@@ -149,22 +149,19 @@ class Borders {
 
     const Surface& surface_;
     const TexelGrid& grid_;
-    std::pmr::vector<Piece> pieces_;
+    std::pmr::vector<Piece> pieces_{grid_.memory};
     std::pmr::vector<uint8_t> near_;
 };
 
-class Linker {
- public:
-    Linker(const Surface& surface, TexelGrid& grid, BakeReport& report,
-           std::pmr::memory_resource* memory)
-        : surface_(surface),
-          grid_(grid),
-          report_(report),
-          borders_(surface, grid, memory),
-          loose_(memory),
-          dependents_(memory),
-          crossingsLeft_(kWalkBudget + kWalkPerTexel * int64_t(grid.count())),
-          memory_(memory) {}
+struct Linker {
+    const Surface& surface;
+    TexelGrid& grid;
+    BakeReport& report;
+    Borders borders{surface, grid};
+    std::pmr::vector<uint8_t> looseSlots{grid.memory};  // per record: the step ends in no texel
+    std::pmr::vector<uint8_t> dependents{
+        grid.memory};  // per texel: slots that name it, at most 255
+    int64_t crossingsLeft = kWalkBudget + kWalkPerTexel * int64_t(grid.count());
 
     void run() {
         eachReal([&](uint32_t texel) { linkOne(texel); });
@@ -177,59 +174,54 @@ class Linker {
         });
         countDependents();
         eachReal([&](uint32_t texel) {
-            if (dependents_[texel] == 0) findDependent(texel);
+            if (dependents[texel] == 0) findDependent(texel);
         });
         measure();
     }
 
- private:
     template <class Visit>
     void eachReal(Visit visit) const {
-        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (grid_.real(texel)) visit(texel);
+        for (uint32_t texel = 0; texel < grid.count(); ++texel)
+            if (grid.real(texel)) visit(texel);
     }
     // Calls visit(other) for the texels that a real texel reads.
     template <class Visit>
     void eachRead(uint32_t texel, Visit visit) const {
         for (int k = 0; k < 8; ++k)
-            if (const uint32_t other = grid_.ring(texel, k); other != kNone) visit(other);
+            if (const uint32_t other = grid.ring(texel, k); other != kNone) visit(other);
     }
     [[nodiscard]] bool isRim(uint32_t texel) const {
-        return grid_.real(texel) && grid_.linkRecord[texel] != kNone;
+        return grid.real(texel) && grid.linkRecord[texel] != kNone;
     }
     [[nodiscard]] uint32_t* ringOf(uint32_t rimTexel) const {
-        FW_ASSERT(size_t(grid_.linkRecord[rimTexel]) * 8 + 7 < grid_.links.size(), "record %u",
-                  grid_.linkRecord[rimTexel]);
-        return &grid_.links[size_t(grid_.linkRecord[rimTexel]) * 8];
+        FW_ASSERT(size_t(grid.linkRecord[rimTexel]) * 8 + 7 < grid.links.size(), "record %u",
+                  grid.linkRecord[rimTexel]);
+        return &grid.links[size_t(grid.linkRecord[rimTexel]) * 8];
     }
 
     // One texel step in ring direction k, in metres on the texel's own triangle, from the texel's
     // point. The point of a forced texel is off its centre, and the centres around would not lie on
     // all sides of it.
     [[nodiscard]] glm::dvec3 stepOf(uint32_t texel, size_t k) const {
-        FW_ASSERT(grid_.owner[texel] < grid_.shapes.size(), "owner of texel %u", texel);
+        FW_ASSERT(grid.owner[texel] < grid.shapes.size(), "owner of texel %u", texel);
         const double x = kRingX[k], y = kRingY[k];
-        const TexelShape& shape = grid_.shapes[grid_.owner[texel]];
+        const TexelShape& shape = grid.shapes[grid.owner[texel]];
         if (shape.usable) return shape.alongU * x + shape.alongV * y;
-        const Triangle& t = surface_.triangles[grid_.owner[texel]];  // no Jacobian: an even step
+        const Triangle& t = surface.triangles[grid.owner[texel]];  // no Jacobian: an even step
         const glm::dvec3 u = unitOr0(t.position[1] - t.position[0]);
-        return (u * x + glm::cross(t.normal, u) * y) * grid_.side;
-    }
-    [[nodiscard]] glm::dvec3 cut(glm::dvec3 step) const {
-        const double length = glm::length(step), limit = kStepLimit * grid_.side;
-        return length > limit ? step * (limit / length) : step;
+        return (u * x + glm::cross(t.normal, u) * y) * grid.side;
     }
 
     [[nodiscard]] bool plain(uint32_t i, uint32_t j, size_t k) const {
-        if (j == kNone || !grid_.real(j) || grid_.chart[j] != grid_.chart[i]) return false;
-        if ((grid_.flags[i] | grid_.flags[j]) & kTexelForced) return false;
-        if (borders_.near(i) && borders_.between(i, j)) return false;
+        if (j == kNone || !grid.real(j) || grid.chart[j] != grid.chart[i]) return false;
+        if ((grid.flags[i] | grid.flags[j]) & kTexelForced) return false;
+        if (borders.near(i) && borders.between(i, j)) return false;
         // Sheets of a folded chart lie side by side in the image and far apart in space.
-        const double length = grid_.distance(i, j);
-        if (length <= kFoldedSlack * grid_.side) return true;
+        const double length = grid.distance(i, j);
+        if (length <= kFoldedSlack * grid.side) return true;
         const double reach =
             std::max(glm::length(stepOf(i, k)), glm::length(stepOf(j, (k + 4) & 7)));
-        return length <= 2 * reach + kFoldedSlack * grid_.side;
+        return length <= 2 * reach + kFoldedSlack * grid.side;
     }
 
     void linkOne(uint32_t texel) {
@@ -237,7 +229,7 @@ class Linker {
         uint8_t loose = 0;
         bool rim = false;
         for (size_t k = 0; k < 8; ++k) {
-            ring[k] = grid_.inImage(texel, k);
+            ring[k] = grid.inImage(texel, k);
             if (plain(texel, ring[k], k)) continue;
             rim = true;
             bool exact = false;
@@ -245,24 +237,26 @@ class Linker {
             if (!exact) loose = uint8_t(loose | 1u << k);
         }
         if (!rim) return;
-        FW_ASSERT(loose_.size() == grid_.links.size() / 8, "%zu records, %zu links", loose_.size(),
-                  grid_.links.size());
-        loose_.push_back(loose);
-        grid_.linkRecord[texel] = uint32_t(grid_.links.size() / 8);
-        grid_.flags[texel] |= kTexelRim;
-        grid_.links.insert(grid_.links.end(), ring, ring + 8);
+        FW_ASSERT(looseSlots.size() == grid.links.size() / 8, "%zu records, %zu links",
+                  looseSlots.size(), grid.links.size());
+        looseSlots.push_back(loose);
+        grid.linkRecord[texel] = uint32_t(grid.links.size() / 8);
+        grid.flags[texel] |= kTexelRim;
+        grid.links.insert(grid.links.end(), ring, ring + 8);
     }
 
     Walk walkFrom(uint32_t texel, glm::dvec3 step) {
-        const Walk walk = walkSurface(surface_, grid_.owner[texel], grid_.weightsOf(texel), step,
-                                      crossingsLeft_ > 0 ? kWalkSteps : kWeakSteps);
-        crossingsLeft_ -= walk.crossed + 1;
+        const Walk walk = walkSurface(surface, grid.owner[texel], grid.weightsOf(texel), step,
+                                      crossingsLeft > 0 ? kWalkSteps : kWeakSteps);
+        crossingsLeft -= walk.crossed + 1;
         return walk;
     }
 
     // The texel one step away over the surface, or kNone. `exact`: the step ends in that texel.
     uint32_t across(uint32_t texel, size_t k, bool& exact) {
-        const glm::dvec3 step = cut(stepOf(texel, k));
+        glm::dvec3 step = stepOf(texel, k);
+        if (const double length = glm::length(step); length > kStepLimit * grid.side)
+            step *= kStepLimit * grid.side / length;
         bool open = false;
         for (int reach = 1; reach <= kReaches; ++reach) {
             const Walk walk = walkFrom(texel, step * double(reach));
@@ -272,29 +266,29 @@ class Linker {
             exact &= reach == 1;
             if (found == texel) break;
             if (found == kNone) continue;
-            const double limit = 2 * reach * glm::length(step) + kFoldedSlack * grid_.side;
-            if (grid_.distance(texel, found) > limit) break;
+            const double limit = 2 * reach * glm::length(step) + kFoldedSlack * grid.side;
+            if (grid.distance(texel, found) > limit) break;
             return found;
         }
-        ++(open ? report_.linksOpen : report_.linksLost);
+        ++(open ? report.linksOpen : report.linksLost);
         return kNone;
     }
 
     // The real texel of the landing chart at, or nearest in space to, the landing point.
     [[nodiscard]] uint32_t landing(const Walk& walk, uint32_t self, bool& exact) const {
-        const Triangle& t = surface_.triangles[walk.triangle];
+        const Triangle& t = surface.triangles[walk.triangle];
         const glm::dvec2 uv = uvAt(t, walk.weights);
         const int x = int(std::floor(uv.x)), y = int(std::floor(uv.y));
-        exact = grid_.inside(x, y) && grid_.real(grid_.at(x, y)) &&
-                grid_.chart[grid_.at(x, y)] == t.chart;
-        if (exact) return grid_.at(x, y);
-        const glm::dvec3 point = positionAt(t, walk.weights) - surface_.low;
+        exact =
+            grid.inside(x, y) && grid.real(grid.at(x, y)) && grid.chart[grid.at(x, y)] == t.chart;
+        if (exact) return grid.at(x, y);
+        const glm::dvec3 point = positionAt(t, walk.weights) - surface.low;
         uint32_t best = kNone;
-        double nearest = 36 * grid_.side * grid_.side;
+        double nearest = 36 * grid.side * grid.side;
         for (int r = 1; r <= kLandingSearch && best == kNone; ++r)
-            grid_.around({x, y}, r, [&](uint32_t texel, glm::ivec2) {
-                if (texel == self || !grid_.real(texel) || grid_.chart[texel] != t.chart) return;
-                const glm::dvec3 d = glm::dvec3(grid_.position[texel]) - point;
+            grid.around({x, y}, r, [&](uint32_t texel, glm::ivec2) {
+                if (texel == self || !grid.real(texel) || grid.chart[texel] != t.chart) return;
+                const glm::dvec3 d = glm::dvec3(grid.position[texel]) - point;
                 if (glm::dot(d, d) >= nearest) return;
                 nearest = glm::dot(d, d);
                 best = texel;
@@ -305,33 +299,33 @@ class Linker {
     // A forced texel that reads no other could never burn: it leaves, and a neighbour takes its
     // area. A texel alone on its piece of the surface (a leaf) stays: other objects may light it.
     void dropUnlinked() {
-        AreaHeir heir(surface_, grid_, memory_);
-        std::pmr::vector<uint32_t> forced(memory_);
-        for (uint32_t i = 0; i < grid_.count(); ++i)
-            if (grid_.real(i) && (grid_.flags[i] & kTexelForced)) forced.push_back(i);
+        AreaHeir heir(surface, grid);
+        std::pmr::vector<uint32_t> forced(grid.memory);
+        for (uint32_t i = 0; i < grid.count(); ++i)
+            if (grid.real(i) && (grid.flags[i] & kTexelForced)) forced.push_back(i);
         bool again = true;  // a texel that read only leaving ones leaves in the next round
         for (int round = 0; again && round < kUnlinkedRounds; ++round) {
             again = false;
             for (uint32_t i : forced) {
-                if (!grid_.real(i)) continue;
+                if (!grid.real(i)) continue;
                 bool linked = false;
-                eachRead(i, [&](uint32_t j) { linked |= grid_.real(j); });
+                eachRead(i, [&](uint32_t j) { linked |= grid.real(j); });
                 if (linked) continue;
-                const uint16_t flags = grid_.flags[i];
-                grid_.flags[i] = 0;
-                const uint32_t to = heir.onSurface(grid_.owner[i]);
+                const uint16_t flags = grid.flags[i];
+                grid.flags[i] = 0;
+                const uint32_t to = heir.onSurface(grid.owner[i]);
                 if (to == kNone) {
-                    grid_.flags[i] = flags;
+                    grid.flags[i] = flags;
                     continue;
                 }
-                grid_.area[to] += grid_.area[i];
-                grid_.area[i] = 0;
-                grid_.owner[i] = grid_.chart[i] = kNone;
+                grid.area[to] += grid.area[i];
+                grid.area[i] = 0;
+                grid.owner[i] = grid.chart[i] = kNone;
                 again = true;
             }
         }
-        for (uint32_t& link : grid_.links)
-            if (link != kNone && !grid_.real(link)) link = kNone;
+        for (uint32_t& link : grid.links)
+            if (link != kNone && !grid.real(link)) link = kNone;
     }
 
     // The place that a slot of a texel's ring should lead to: the end of a walk of about one texel
@@ -345,14 +339,14 @@ class Linker {
         glm::dvec3 step = stepOf(texel, k);
         const double length = glm::length(step);
         if (!(length > 0)) return {};
-        step *= std::clamp(length, kAimLow * grid_.side, kAimHigh * grid_.side) / length;
+        step *= std::clamp(length, kAimLow * grid.side, kAimHigh * grid.side) / length;
         const Walk walk = walkFrom(texel, step);
         if (!walk.landed) return {};
-        return {positionAt(surface_.triangles[walk.triangle], walk.weights) - surface_.low,
-                2 * glm::length(step) + kFoldedSlack * grid_.side, true};
+        return {positionAt(surface.triangles[walk.triangle], walk.weights) - surface.low,
+                2 * glm::length(step) + kFoldedSlack * grid.side, true};
     }
     [[nodiscard]] double missOf(const Aim& aim, uint32_t texel) const {
-        return glm::length(glm::dvec3(grid_.position[texel]) - aim.point);
+        return glm::length(glm::dvec3(grid.position[texel]) - aim.point);
     }
 
     // Slots whose step ends in no texel, or in the texel of another slot, take the free texel
@@ -361,18 +355,18 @@ class Linker {
         uint32_t* ring = ringOf(i);
         for (size_t k = 0; k < 8; ++k) {
             const bool shared = ring[k] != kNone && std::count(ring, ring + 8, ring[k]) > 1;
-            if (!shared && (loose_[grid_.linkRecord[i]] >> k & 1) == 0) continue;
+            if (!shared && (looseSlots[grid.linkRecord[i]] >> k & 1) == 0) continue;
             const Aim aim = aimOf(i, k);
             if (!aim.landed) continue;
-            double least = kMissLimit * grid_.side;
+            double least = kMissLimit * grid.side;
             if (ring[k] != kNone && !shared) least = std::min(least, missOf(aim, ring[k]));
             uint32_t best = kNone;
             for (int a = 0; a < 8; ++a)
                 for (int b = 0; ring[a] != kNone && b < 8; ++b) {
-                    const uint32_t texel = grid_.ring(ring[a], b);
+                    const uint32_t texel = grid.ring(ring[a], b);
                     if (texel == kNone || texel == i || missOf(aim, texel) >= least ||
                         std::find(ring, ring + 8, texel) != ring + 8 ||
-                        grid_.distance(i, texel) > aim.reach)
+                        grid.distance(i, texel) > aim.reach)
                         continue;
                     least = missOf(aim, texel);
                     best = texel;
@@ -389,13 +383,13 @@ class Linker {
             uint32_t* ring = ringOf(j);
             if (std::find(ring, ring + 8, i) != ring + 8) return;
             int slot = -1;
-            double nearest = 2 * grid_.side;
+            double nearest = 2 * grid.side;
             for (int q = 0; q < 8; ++q) {
                 const bool spare = ring[q] == kNone || std::count(ring, ring + 8, ring[q]) > 1;
                 for (int beside : {1, 7}) {
                     const uint32_t neighbour = ring[(q + beside) & 7];
                     if (!spare || neighbour == kNone) continue;
-                    const double distance = grid_.distance(neighbour, i);
+                    const double distance = grid.distance(neighbour, i);
                     if (distance >= nearest) continue;
                     nearest = distance;
                     slot = q;
@@ -406,26 +400,25 @@ class Linker {
     }
 
     void countDependents() {
-        dependents_.assign(grid_.count(), 0);
+        dependents.assign(grid.count(), 0);
         eachReal([&](uint32_t i) {
-            eachRead(i, [&](uint32_t j) {
-                dependents_[j] = uint8_t(std::min(dependents_[j] + 1, 255));
-            });
+            eachRead(
+                i, [&](uint32_t j) { dependents[j] = uint8_t(std::min(dependents[j] + 1, 255)); });
         });
     }
 
     // For a texel i that no other reads, where a fire would stay: among the texels that i reads,
     // the slot with the nearest aim takes i instead of a texel that others read too.
     void findDependent(uint32_t i) {
-        double least = kMissLimit * grid_.side;
+        double least = kMissLimit * grid.side;
         uint32_t* slot = nullptr;
         eachRead(i, [&](uint32_t j) {
             if (!isRim(j)) return;
             uint32_t* ring = ringOf(j);
             for (size_t q = 0; q < 8; ++q) {
-                if (ring[q] != kNone && dependents_[ring[q]] < 2) continue;
+                if (ring[q] != kNone && dependents[ring[q]] < 2) continue;
                 const Aim aim = aimOf(j, q);
-                if (!aim.landed || grid_.distance(i, j) > aim.reach) continue;
+                if (!aim.landed || grid.distance(i, j) > aim.reach) continue;
                 const double loss = missOf(aim, i) - (ring[q] == kNone ? 0 : missOf(aim, ring[q]));
                 if (loss >= least) continue;
                 least = loss;
@@ -433,46 +426,36 @@ class Linker {
             }
         });
         if (slot == nullptr) return;
-        FW_ASSERT(*slot == kNone || dependents_[*slot] > 1, "texel %u would lose its only reader",
+        FW_ASSERT(*slot == kNone || dependents[*slot] > 1, "texel %u would lose its only reader",
                   *slot);
-        if (*slot != kNone) --dependents_[*slot];
+        if (*slot != kNone) --dependents[*slot];
         *slot = i;
-        ++dependents_[i];
+        ++dependents[i];
     }
 
     void measure() {
         double shortest = 1e300, longest = 0;
         eachReal([&](uint32_t i) {
-            ++report_.realTexels;
-            report_.forcedTexels += (grid_.flags[i] & kTexelForced) != 0;
-            report_.rimTexels += (grid_.flags[i] & kTexelRim) != 0;
-            report_.readerless += dependents_[i] == 0;
+            ++report.realTexels;
+            report.forcedTexels += (grid.flags[i] & kTexelForced) != 0;
+            report.rimTexels += (grid.flags[i] & kTexelRim) != 0;
+            report.readerless += dependents[i] == 0;
             eachRead(i, [&](uint32_t j) {
-                shortest = std::min(shortest, grid_.distance(i, j));
-                longest = std::max(longest, grid_.distance(i, j));
+                shortest = std::min(shortest, grid.distance(i, j));
+                longest = std::max(longest, grid.distance(i, j));
             });
         });
         FW_ASSERT(shortest >= 0 && longest < 1e12, "links of %g to %g m", shortest, longest);
-        grid_.linkMax = longest;
-        report_.linkMin = longest > 0 ? shortest / grid_.side : 0;
-        report_.linkMax = longest / grid_.side;
+        grid.linkMax = longest;
+        report.linkMin = longest > 0 ? shortest / grid.side : 0;
+        report.linkMax = longest / grid.side;
     }
-
-    const Surface& surface_;
-    TexelGrid& grid_;
-    BakeReport& report_;
-    Borders borders_;
-    std::pmr::vector<uint8_t> loose_;       // per record: slots whose step ends in no texel
-    std::pmr::vector<uint8_t> dependents_;  // per texel: slots that name it, at most 255
-    int64_t crossingsLeft_;
-    std::pmr::memory_resource* memory_;
 };
 
 }  // namespace
 
-void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report,
-                std::pmr::memory_resource* memory) {
-    Linker(surface, grid, report, memory).run();
+void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report) {
+    Linker{surface, grid, report}.run();
 }
 
 }  // namespace fw::mesh

@@ -26,9 +26,10 @@ glm::dvec2 turned(glm::dvec2 u, glm::dvec2 cosSin) {
     return {u.x * cosSin.x - u.y * cosSin.y, u.x * cosSin.y + u.y * cosSin.x};
 }
 
-// Turns a chart so that its box is smallest and upright, and moves it to the origin.
-Piece orientPiece(Surface& surface, std::span<const uint32_t> members, uint32_t chart) {
-    FW_ASSERT(!members.empty(), "chart %u is empty", chart);
+// Turns a chart so that its box is smallest and upright, and moves it to the origin. Returns the
+// box's size.
+glm::dvec2 orient(Surface& surface, std::span<const uint32_t> members) {
+    FW_ASSERT(!members.empty());
     glm::dvec2 bestCosSin(1, 0);
     double bestArea = 1e300;
     for (int turn = 0; turn < kTurns; ++turn) {
@@ -49,18 +50,15 @@ Piece orientPiece(Surface& surface, std::span<const uint32_t> members, uint32_t 
     const Extent2 extent = extentOf(surface, members);
     for (uint32_t i : members)
         for (glm::dvec2& u : surface.triangles[i].uv) u -= extent.low;
-    Piece piece;
-    piece.chart = chart;
-    piece.size = extent.size();
-    return piece;
+    return extent.size();
 }
 
 class Packer {
  public:
-    Packer(Surface& surface, uint32_t charts, std::pmr::memory_resource* memory)
-        : surface_(surface), groups_(groupByChart(surface, charts, memory)), memory_(memory) {
+    Packer(Surface& surface, uint32_t charts)
+        : surface_(surface), groups_(groupByChart(surface, charts)) {
         for (uint32_t c = 0; c < charts; ++c)
-            if (!groups_.of(c).empty()) pieces_.push_back(orientPiece(surface, groups_.of(c), c));
+            if (!groups_.of(c).empty()) pieces_.push_back({orient(surface, groups_.of(c)), c});
         std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
             return a.size.y != b.size.y ? a.size.y > b.size.y : a.chart < b.chart;
         });
@@ -171,18 +169,17 @@ class Packer {
 
     Surface& surface_;
     Groups groups_;
-    std::pmr::memory_resource* memory_;
-    std::pmr::vector<Piece> pieces_{memory_};
-    std::pmr::vector<int> bottoms_{memory_}, tops_{memory_}, skyline_{memory_};
-    std::pmr::vector<int> plainBottoms_{memory_}, plainTops_{memory_};
+    std::pmr::vector<Piece> pieces_{surface_.memory};
+    std::pmr::vector<int> bottoms_{surface_.memory}, tops_{surface_.memory};
+    std::pmr::vector<int> plainBottoms_{surface_.memory}, plainTops_{surface_.memory};
+    std::pmr::vector<int> skyline_{surface_.memory};
     uint32_t widest_ = 0, tallest_ = 0;
 };
 
 }  // namespace
 
-AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t maxSide,
-                     std::pmr::memory_resource* memory) {
-    Packer packer(surface, charts, memory);
+AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t maxSide) {
+    Packer packer(surface, charts);
     const uint32_t side = maxSide & ~7u;
     const double room = double(side) * side;
     // A chart takes at least nine texels: one and its border.
@@ -212,9 +209,8 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
         // Height shrinks with the square of the density, until only borders are left.
         density /= std::clamp(std::sqrt(over), places < kPlaces ? kStep : kWideStep, 2.0);
     }
-    core::fail(FW_ERROR_INVALID_ARGUMENT,
-               "The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",
-               packer.pieces(), side, side);
+    core::refuse("The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",
+                 packer.pieces(), side, side);
 }
 
 }  // namespace fw::mesh

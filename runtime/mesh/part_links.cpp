@@ -120,20 +120,20 @@ PartPath partPath(const BurnDomain& domain, std::span<const gpu::BurnMaterial> m
     return path;
 }
 
-void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory) {
+void linkParts(BurnDomain& domain) {
     domain.partLinks.clear();
-    Pieces pieces(memory);
+    Pieces pieces(domain.memory);
     findPieces(domain, {}, pieces);
     if (pieces.count < 2) return;
     const double units = 1 / std::max(double(domain.quantum), 1e-12);
     const int gap = int(std::min(gpu::kContactGap / 1000.0 * units, double(kFarthest)));
     const double block = 6 * double(domain.texelSide) * units;  // from one's middle to another's
-    Blocks blocks{domain, pieces, std::pmr::vector<Entry>(memory),
+    Blocks blocks{domain, pieces, std::pmr::vector<Entry>(domain.memory),
                   int(std::clamp(gap + block, 1.0, 1e6))};
     blocks.gather();
     std::pmr::vector<int64_t> squares(size_t(domain.tileCount()) * 4, int64_t(gap) * gap + 1,
-                                      memory);
-    std::pmr::vector<uint32_t> links(squares.size(), kNone, memory);
+                                      domain.memory);
+    std::pmr::vector<uint32_t> links(squares.size(), kNone, domain.memory);
     std::array<Near, kCandidates> near;
     for (const Entry& of : blocks.entries) {
         blocks.nearest(of, near);

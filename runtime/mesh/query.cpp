@@ -1,9 +1,11 @@
-// Texels near a point. The point is rounded to position units first, so that every machine picks
-// the same texels. Tiles are skipped by their bounds.
+// Texels near a point, and near those of another mesh. The point is rounded to position units
+// first, so that every machine picks the same texels. Tiles are skipped by their bounds.
 #include "mesh/texels.h"
+#include "shared/front.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/vector_int3_sized.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -13,7 +15,7 @@ namespace {
 // A point in units of 2^shift position units. Points near the mesh have a shift of 0. Points whose
 // square would not fit into 64 bits have a larger one, still finer than the host's float.
 struct Units {
-    int64_t at[3];  // position units
+    glm::i64vec3 at;  // position units
     uint32_t shift;
 };
 
@@ -37,19 +39,14 @@ Units unitsOf(const BurnDomain& domain, const float point[3]) {
     while (most >> units.shift > kMaxUnits) ++units.shift;
     return units;
 }
+int64_t squareOf(glm::i64vec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 int64_t squareTo(const TexelPosition& p, const Units& u) {
-    const int64_t x = (p.x - u.at[0]) >> u.shift, y = (p.y - u.at[1]) >> u.shift,
-                  z = (p.z - u.at[2]) >> u.shift;
-    return x * x + y * y + z * z;
+    return squareOf((glm::i64vec3(p.units()) - u.at) >> int64_t(u.shift));
 }
 int64_t squareTo(const TileBounds& b, const Units& u) {
-    int64_t sum = 0;
-    for (int k = 0; k < 3; ++k) {
-        const int64_t d =
-            std::max({b.low[k] - u.at[k], u.at[k] - b.high[k], int64_t(0)}) >> u.shift;
-        sum += d * d;
-    }
-    return sum;
+    const glm::i64vec3 low(b.low[0], b.low[1], b.low[2]), high(b.high[0], b.high[1], b.high[2]);
+    const glm::i64vec3 off = glm::max(glm::max(low - u.at, u.at - high), int64_t(0));
+    return squareOf(off >> int64_t(u.shift));
 }
 
 // Calls visit(texel, square) for the real texels within a square distance that may shrink.
@@ -80,6 +77,56 @@ uint32_t nearestWithin(const BurnDomain& domain, const Units& point, int64_t lim
 int64_t unitsOf(const BurnDomain& domain, float metres) {
     return metres >= 0 ? toUnits(double(metres), double(domain.quantum)) : 0;  // also of NaN
 }
+
+constexpr int kFaces = 1 << 27;         // of two unit normals in Q14: within 60 degrees
+constexpr double kFarthestReach = 2e9;  // micrometres, of a reach: squares fit
+
+// Micrometres: whole numbers, so that every machine picks the same texels.
+using Place = glm::i64vec3;
+
+Place micrometresOf(const BurnDomain& domain, uint32_t texel) noexcept {
+    const glm::dvec3 place = domain.placeOf(texel) * 1e6;
+    return {std::llround(place.x), std::llround(place.y), std::llround(place.z)};
+}
+
+struct PlacedTile {  // a tile with real texels
+    uint32_t tile = 0;
+    Place low{}, high{};
+};
+
+// `places`: by texel.
+std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<Place>& places) {
+    places.resize(domain.texelCount());
+    std::pmr::vector<PlacedTile> tiles(places.get_allocator().resource());
+    for (uint32_t t = 0; t < domain.tileCount(); ++t) {
+        constexpr int64_t kFar = std::numeric_limits<int64_t>::max();
+        PlacedTile tile{t, Place(kFar), Place(-kFar)};
+        eachTexel(domain, tile.tile, [&](uint32_t texel) {
+            const Place& place = places[texel] = micrometresOf(domain, texel);
+            tile.low = glm::min(tile.low, place);
+            tile.high = glm::max(tile.high, place);
+        });
+        if (tile.low[0] <= tile.high[0]) tiles.push_back(tile);
+    }
+    return tiles;
+}
+
+// Square of the distance between two boxes, or most * most + 1 if it is larger than most * most.
+int64_t gapOf(const Place& lowA, const Place& highA, const PlacedTile& b, int64_t most) noexcept {
+    int64_t sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const int64_t gap = std::max({lowA[i] - b.high[i], b.low[i] - highA[i], int64_t(0)});
+        if (gap > most) return most * most + 1;
+        sum += gap * gap;
+    }
+    return sum;
+}
+
+struct NearTile {
+    int64_t gap = 0;  // square
+    uint32_t tile = 0;
+    auto operator<=>(const NearTile&) const = default;
+};
 
 }  // namespace
 
@@ -128,6 +175,51 @@ void texelWeights(const BurnDomain& domain, uint32_t texel, float (&weights)[3])
     weights[0] = float(u);
     weights[1] = float(v);
     weights[2] = float(1 - u - v);
+}
+
+uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
+                     std::pmr::vector<uint32_t>& out) {
+    std::pmr::memory_resource* memory = out.get_allocator().resource();
+    std::pmr::vector<Place> fromPlaces(memory), toPlaces(memory);
+    const std::pmr::vector<PlacedTile> sources = tilesOf(from, fromPlaces),
+                                       tiles = tilesOf(to, toPlaces);
+    std::pmr::vector<NearTile> near(memory);
+    out.assign(to.texelCount(), kNone);
+    const auto farthest = int64_t(std::min(double(reach) * 1e6, kFarthestReach));
+    const int64_t least = farthest * farthest;
+    FW_ASSERT(farthest >= 0, "reach %g m", double(reach));
+    uint32_t matched = 0;
+    for (const PlacedTile& tile : tiles) {
+        near.clear();
+        for (uint32_t k = 0; k < sources.size(); ++k)
+            if (const int64_t gap = gapOf(tile.low, tile.high, sources[k], farthest); gap <= least)
+                near.push_back({gap, k});
+        std::sort(near.begin(), near.end());
+        eachTexel(to, tile.tile, [&](uint32_t texel) {
+            const Place& place = toPlaces[texel];
+            const gpu::ivec3 normal = gpu::decodeNormal(to.normals[texel]);
+            uint32_t& taken = out[texel];
+            // A texel that faces another way counts as one reach further off.
+            int64_t best = 2 * least + 1;
+            for (const NearTile& one : near) {
+                if (one.gap > best) break;
+                const PlacedTile& source = sources[one.tile];
+                if (gapOf(place, place, source, farthest) > std::min(best, least)) continue;
+                eachTexel(from, source.tile, [&](uint32_t other) {
+                    int64_t square = squareOf(fromPlaces[other] - place);
+                    if (square > std::min(best, least)) return;
+                    if (gpu::dotInt(gpu::decodeNormal(from.normals[other]), normal) < kFaces)
+                        square += least;
+                    if (square > best || (square == best && other > taken)) return;
+                    best = square;
+                    taken = other;
+                });
+            }
+            FW_ASSERT(taken == kNone || from.real(taken), "texel %u", taken);
+            matched += taken != kNone ? 1u : 0u;
+        });
+    }
+    return matched;
 }
 
 }  // namespace fw::mesh

@@ -85,11 +85,11 @@ glm::dvec3 closestWeights(const Triangle& t, glm::dvec2 p) {
     return weights;
 }
 
-class Rasteriser {
- public:
-    Rasteriser(const Surface& surface, TexelGrid& grid, BakeReport& report,
-               std::pmr::memory_resource* memory)
-        : surface_(surface), grid_(grid), report_(report), parts_(memory), memory_(memory) {}
+struct Rasteriser {
+    const Surface& surface;
+    TexelGrid& grid;
+    BakeReport& report;
+    std::pmr::vector<Part> parts{grid.memory};
 
     void run() {
         ownTexels();
@@ -99,57 +99,56 @@ class Rasteriser {
         placeTexels();
     }
 
- private:
     void ownTexels() {
-        for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
-            const Triangle& t = surface_.triangles[i];
-            eachTouched(t, grid_.width, grid_.height, [&](int x, int y) {
+        for (uint32_t i = 0; i < surface.triangles.size(); ++i) {
+            const Triangle& t = surface.triangles[i];
+            eachTouched(t, grid.width, grid.height, [&](int x, int y) {
                 glm::dvec3 w;
                 if (!weightsAt(t, {x + 0.5, y + 0.5}, w)) return;
                 if (std::min({w.x, w.y, w.z}) < -1e-9) return;
-                const uint32_t texel = grid_.at(x, y);
-                if (grid_.owner[texel] == kNone)
+                const uint32_t texel = grid.at(x, y);
+                if (grid.owner[texel] == kNone)
                     own(texel, i, w);
                 else if (std::min({w.x, w.y, w.z}) > 1e-6)
-                    ++report_.overlaps;
+                    ++report.overlaps;
             });
         }
     }
 
     void own(uint32_t texel, uint32_t triangle, glm::dvec3 weights) {
-        FW_ASSERT(texel < grid_.count() && triangle < surface_.triangles.size(), "texel %u, %u",
+        FW_ASSERT(texel < grid.count() && triangle < surface.triangles.size(), "texel %u, %u",
                   texel, triangle);
-        grid_.owner[texel] = triangle;
-        grid_.chart[texel] = surface_.triangles[triangle].chart;
-        grid_.weights[texel] = glm::vec2(float(weights.x), float(weights.y));
-        grid_.flags[texel] = kTexelReal;
+        grid.owner[texel] = triangle;
+        grid.chart[texel] = surface.triangles[triangle].chart;
+        grid.weights[texel] = glm::vec2(float(weights.x), float(weights.y));
+        grid.flags[texel] = kTexelReal;
     }
 
     void measureAreas() {
-        for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
-            const Triangle& t = surface_.triangles[i];
+        for (uint32_t i = 0; i < surface.triangles.size(); ++i) {
+            const Triangle& t = surface.triangles[i];
             const double flat = std::abs(uvArea(t));
             if (flat < 1e-9) {  // no area in the atlas: all of it is one part, at its first corner
                 const glm::dvec2 at = t.uv[0];
-                const int x = std::clamp(int(at.x), 0, int(grid_.width) - 1);
-                const int y = std::clamp(int(at.y), 0, int(grid_.height) - 1);
-                parts_.push_back({grid_.at(x, y), i, t.area});
+                const int x = std::clamp(int(at.x), 0, int(grid.width) - 1);
+                const int y = std::clamp(int(at.y), 0, int(grid.height) - 1);
+                parts.push_back({grid.at(x, y), i, t.area});
                 continue;
             }
             const TriangleSides sides(t);
-            eachTouched(t, grid_.width, grid_.height, [&](int x, int y) {
+            eachTouched(t, grid.width, grid.height, [&](int x, int y) {
                 const int place = sides.classify(x, y);
                 if (place < 0) return;
                 const double area = (place > 0 ? 1 : clippedArea(t, x, y)) * (t.area / flat);
                 if (!(area > 0)) return;
-                const uint32_t texel = grid_.at(x, y);
-                if (grid_.chart[texel] == t.chart)
-                    grid_.area[texel] += area;
+                const uint32_t texel = grid.at(x, y);
+                if (grid.chart[texel] == t.chart)
+                    grid.area[texel] += area;
                 else
-                    parts_.push_back({texel, i, area});
+                    parts.push_back({texel, i, area});
             });
         }
-        std::sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) {
+        std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
             if (a.texel != b.texel) return a.texel < b.texel;
             return a.area != b.area ? a.area > b.area : a.triangle < b.triangle;
         });
@@ -158,37 +157,37 @@ class Rasteriser {
     // A part whose chart owns no texel beside it would not burn: it gets its texel. All parts are
     // decided from the same state, so that their order does not matter.
     void forceTexels() {
-        std::pmr::vector<Part> forced(memory_);
-        for (const Part& part : parts_) {
-            if (grid_.owner[part.texel] != kNone) continue;
+        std::pmr::vector<Part> forced(grid.memory);
+        for (const Part& part : parts) {
+            if (grid.owner[part.texel] != kNone) continue;
             if (!forced.empty() && forced.back().texel == part.texel) continue;
             bool beside = false;
             for (size_t k = 0; k < 8; k += 2)
-                if (const uint32_t texel = grid_.inImage(part.texel, k); texel != kNone)
-                    beside |= grid_.chart[texel] == surface_.triangles[part.triangle].chart;
+                if (const uint32_t texel = grid.inImage(part.texel, k); texel != kNone)
+                    beside |= grid.chart[texel] == surface.triangles[part.triangle].chart;
             if (!beside) forced.push_back(part);
         }
         for (const Part& part : forced) {
-            const glm::dvec2 middle = glm::dvec2(grid_.placeOf(part.texel)) + 0.5;
+            const glm::dvec2 middle = glm::dvec2(grid.placeOf(part.texel)) + 0.5;
             own(part.texel, part.triangle,
-                closestWeights(surface_.triangles[part.triangle], middle));
-            grid_.flags[part.texel] |= kTexelForced;
+                closestWeights(surface.triangles[part.triangle], middle));
+            grid.flags[part.texel] |= kTexelForced;
         }
     }
 
     void giveParts() {
-        std::pmr::vector<uint32_t> heirOf(surface_.chartCount, kNone, memory_);
-        AreaHeir heir(surface_, grid_, memory_);
-        for (const Part& part : parts_) {
-            const uint32_t chart = surface_.triangles[part.triangle].chart;
+        std::pmr::vector<uint32_t> heirOf(surface.chartCount, kNone, grid.memory);
+        AreaHeir heir(surface, grid);
+        for (const Part& part : parts) {
+            const uint32_t chart = surface.triangles[part.triangle].chart;
             FW_ASSERT(chart < heirOf.size(), "chart %u of %zu", chart, heirOf.size());
-            const glm::ivec2 middle = grid_.placeOf(part.texel);
+            const glm::ivec2 middle = grid.placeOf(part.texel);
             uint32_t best = kNone;
             int nearest = 1 << 30;
-            grid_.around(middle, 3, [&](uint32_t texel, glm::ivec2 at) {
+            grid.around(middle, 3, [&](uint32_t texel, glm::ivec2 at) {
                 const glm::ivec2 d = at - middle;
                 const int square = d.x * d.x + d.y * d.y;
-                if (grid_.chart[texel] != chart || square >= nearest) return;
+                if (grid.chart[texel] != chart || square >= nearest) return;
                 nearest = square;
                 best = texel;
             });
@@ -197,33 +196,26 @@ class Rasteriser {
                     heirOf[chart] = heir.anywhere(part.triangle, part.texel);
                 best = heirOf[chart];
             }
-            if (best != kNone) grid_.area[best] += part.area;
+            if (best != kNone) grid.area[best] += part.area;
         }
     }
 
     void placeTexels() {
-        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (grid_.owner[texel] != kNone)
-                grid_.position[texel] = glm::vec3(
-                    positionAt(surface_.triangles[grid_.owner[texel]], grid_.weightsOf(texel)) -
-                    surface_.low);
+        for (uint32_t texel = 0; texel < grid.count(); ++texel)
+            if (grid.owner[texel] != kNone)
+                grid.position[texel] = glm::vec3(
+                    positionAt(surface.triangles[grid.owner[texel]], grid.weightsOf(texel)) -
+                    surface.low);
     }
-
-    const Surface& surface_;
-    TexelGrid& grid_;
-    BakeReport& report_;
-    std::pmr::vector<Part> parts_;
-    std::pmr::memory_resource* memory_;
 };
 
 }  // namespace
 
-AreaHeir::AreaHeir(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory)
+AreaHeir::AreaHeir(const Surface& surface, const TexelGrid& grid)
     : surface_(surface),
       grid_(grid),
-      texelOf_(surface.triangles.size(), kNone, memory),
-      visited_(surface.triangles.size(), 0, memory),
-      queue_(memory) {
+      texelOf_(surface.triangles.size(), kNone, grid.memory),
+      visited_(surface.triangles.size(), 0, grid.memory) {
     for (uint32_t texel = 0; texel < grid.count(); ++texel)
         if (grid.owner[texel] != kNone) texelOf_[grid.owner[texel]] = texel;
 }
@@ -260,15 +252,14 @@ uint32_t AreaHeir::anywhere(uint32_t from, uint32_t hint) {
     return kNone;
 }
 
-TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, double density,
-                    BakeReport& report, std::pmr::memory_resource* memory) {
-    FW_ASSERT(density > 0 && width % kTileSide == 0 && height % kTileSide == 0,
-              "%u x %u texels at %g per m", width, height, density);
-    TexelGrid grid(memory);
-    grid.width = width;
-    grid.height = height;
-    grid.side = 1 / density;
-    const size_t count = size_t(width) * height;
+TexelGrid rasterise(const Surface& surface, const AtlasPlan& plan, BakeReport& report) {
+    FW_ASSERT(plan.density > 0 && plan.width % kTileSide == 0 && plan.height % kTileSide == 0,
+              "%u x %u texels at %g per m", plan.width, plan.height, plan.density);
+    TexelGrid grid(surface.memory);
+    grid.width = plan.width;
+    grid.height = plan.height;
+    grid.side = 1 / plan.density;
+    const uint32_t count = grid.count();
     for (auto* texels : {&grid.owner, &grid.chart, &grid.linkRecord}) texels->assign(count, kNone);
     grid.position.assign(count, glm::vec3(0));
     grid.weights.assign(count, glm::vec2(0));
@@ -276,7 +267,7 @@ TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, dou
     grid.flags.assign(count, 0);
     grid.shapes.reserve(surface.triangles.size());
     for (const Triangle& t : surface.triangles) grid.shapes.push_back(texelShape(t));
-    Rasteriser(surface, grid, report, memory).run();
+    Rasteriser{surface, grid, report}.run();
     return grid;
 }
 

@@ -18,23 +18,13 @@ class RayTree {
     static constexpr uint32_t kMostSteps = 4096, kWeakSteps = 48;
     static constexpr int64_t kStepBudget = 1 << 26, kStepsPerTexel = 192;
 
-    RayTree(const Surface& surface, std::pmr::memory_resource* memory)
-        : surface_(surface),
-          pad_(float(1e-6 * surface.extent)),
-          nodes_(memory),
-          shapes_(memory),
-          order_(memory),
-          centres_(memory) {
+    explicit RayTree(const Surface& surface) : surface_(surface) {
         const uint32_t count = uint32_t(surface.triangles.size());
-        order_.resize(count);
-        centres_.resize(count);
-        for (uint32_t i = 0; i < count; ++i) {
-            order_[i] = i;
-            const Triangle& t = surface.triangles[i];
-            centres_[i] =
-                glm::vec3((t.position[0] + t.position[1] + t.position[2]) / 3.0 - surface.low);
-        }
         FW_ASSERT(count > 0);
+        for (uint32_t i = 0; i < count; ++i) {
+            order_.push_back(i);
+            centres_.push_back(glm::vec3(centreOf(surface.triangles[i]) - surface.low));
+        }
         nodes_.reserve(size_t(count) + 2);
         build(0, count);
         shapes_.reserve(count);
@@ -81,12 +71,6 @@ class RayTree {
         }
         stepsLeft -= steps;
         return nearest;
-    }
-    // Likewise, without a budget of all rays.
-    [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
-                             uint32_t self) const {
-        int64_t steps = kMostSteps;
-        return cast(from, direction, least, self, steps);
     }
 
  private:
@@ -164,11 +148,12 @@ class RayTree {
     }
 
     const Surface& surface_;
-    float pad_;  // m: a texel on the rim of a box must not miss it by rounding
-    std::pmr::vector<Node> nodes_;
-    std::pmr::vector<Shape> shapes_;
-    std::pmr::vector<uint32_t> order_;
-    std::pmr::vector<glm::vec3> centres_;
+    // m: a texel on the rim of a box must not miss it by rounding.
+    float pad_ = float(1e-6 * surface_.extent);
+    std::pmr::vector<Node> nodes_{surface_.memory};
+    std::pmr::vector<Shape> shapes_{surface_.memory};
+    std::pmr::vector<uint32_t> order_{surface_.memory};
+    std::pmr::vector<glm::vec3> centres_{surface_.memory};
 };
 
 }  // namespace fw::mesh

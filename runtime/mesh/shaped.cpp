@@ -1,6 +1,5 @@
-#include "mesh/shaped.h"
+#include "mesh/bake.h"
 
-#include "mesh/ring.h"
 #include "mesh/texels.h"
 #include "shared/front.h"
 
@@ -22,16 +21,16 @@ struct Places {
     [[nodiscard]] glm::dvec3 at(uint32_t texel) const { return shape * from.placeOf(texel); }
 };
 
-void measure(const Places& places, BurnDomain& out, std::pmr::memory_resource* memory) {
+void measure(const Places& places, BurnDomain& out) {
     const BurnDomain& from = places.from;
-    std::pmr::vector<float> shorter(memory);
+    std::pmr::vector<float> shorter(out.memory);
     double longest = 0;
     for (uint32_t i = 0; i < from.texelCount(); ++i) {
         if (!from.real(i)) continue;
         const glm::dvec3 here = places.at(i);
         double side[2] = {};
         for (uint32_t k = 0; k < 8; ++k) {
-            const uint32_t other = ringOf(from, i, k);
+            const uint32_t other = from.ringOf(i, k);
             if (other == kNone || !from.real(other)) continue;
             const double length = glm::length(places.at(other) - here);
             longest = std::max(longest, length);
@@ -58,7 +57,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     BurnDomain out(memory);
     out = from;  // vectors keep `memory`
     const Places places{from, shape};
-    measure(places, out, memory);
+    measure(places, out);
 
     glm::dvec3 low, high;
     for (int k = 0; k < 3; ++k) {
@@ -107,7 +106,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
             std::swap(out.indices[i + 1], out.indices[i + 2]);
     FW_ASSERT(growth > 0 && growth < 1e12, "growth %g", growth);
     buildTileBounds(out);
-    linkParts(out, memory);
+    linkParts(out);
     return out;
 }
 

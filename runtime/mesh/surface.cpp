@@ -164,10 +164,9 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
     const glm::dvec3 size = surface.high - surface.low;
     surface.extent = std::max({size.x, size.y, size.z});
     if (!(surface.extent >= kExtentLow && surface.extent <= kExtentHigh))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The mesh's longest side is " FW_LENGTH " " FW_LENGTH_UNIT
-                   "; it must lie in [" FW_LENGTH ", " FW_LENGTH "] " FW_LENGTH_UNIT ".",
-                   surface.extent, kExtentLow, kExtentHigh);
+        core::refuse("The mesh's longest side is " FW_LENGTH " " FW_LENGTH_UNIT
+                     "; it must lie in [" FW_LENGTH ", " FW_LENGTH "] " FW_LENGTH_UNIT ".",
+                     surface.extent, kExtentLow, kExtentHigh);
 
     std::pmr::vector<uint32_t> pointOf(memory);
     // Never finer than positions can tell apart, never so coarse that the shape goes.
@@ -192,7 +191,7 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
         t.area = 0.5 * glm::length(across);
         if (t.point[0] == t.point[1] || t.point[1] == t.point[2] || t.point[2] == t.point[0] ||
             t.area < 1e-16 * surface.extent * surface.extent) {
-            ++surface.degenerate;
+            ++surface.report.degenerate;
             continue;
         }
         t.normal = across / (2 * t.area);
@@ -201,17 +200,17 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
         surface.triangles.push_back(t);
     }
     if (surface.triangles.empty())
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "The mesh's area is 0 m^2: all %zu triangles are degenerate; at least 1 must have "
             "area.",
             count);
     return surface;
 }
 
-void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* memory) {
+void pairEdges(Surface& surface, bool uvMeaningful) {
     auto& triangles = surface.triangles;
-    surface.openEdges = surface.nonManifoldEdges = surface.seamEdges = surface.chartCount = 0;
+    BakeReport& report = surface.report;
+    report.openEdges = report.nonManifoldEdges = report.seamEdges = surface.chartCount = 0;
     for (Triangle& t : triangles) {
         FW_ASSERT(std::max({t.point[0], t.point[1], t.point[2]}) < surface.pointCount,
                   "points %u, %u, %u of %u", t.point[0], t.point[1], t.point[2],
@@ -219,14 +218,14 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
         std::fill_n(t.neighbour, 3, kNone);
         std::fill_n(t.seam, 3, false);
     }
-    const std::pmr::vector<EdgeUse> uses = sortedUses(triangles, memory);
+    const std::pmr::vector<EdgeUse> uses = sortedUses(triangles, surface.memory);
 
-    std::pmr::vector<uint32_t> parent(triangles.size(), memory);
+    std::pmr::vector<uint32_t> parent(triangles.size(), surface.memory);
     std::iota(parent.begin(), parent.end(), 0u);
-    std::pmr::vector<uint8_t> used(uses.size(), 0, memory);
+    std::pmr::vector<uint8_t> used(uses.size(), 0, surface.memory);
     for (size_t start = 0, end = 0; start < uses.size(); start = end) {
         while (end < uses.size() && uses[start].sameEdge(uses[end])) ++end;
-        surface.nonManifoldEdges += end - start > 2;
+        report.nonManifoldEdges += end - start > 2;
         for (size_t i = start; i < end; ++i) {
             if (used[i]) continue;
             size_t best = end;
@@ -239,7 +238,7 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
                 bestFit = fit;
             }
             if (best == end) {
-                ++surface.openEdges;
+                ++report.openEdges;
                 continue;
             }
             used[i] = used[best] = 1;
@@ -253,10 +252,10 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
             if (bestFit.continuous)
                 parent[rootOf(parent, a.triangle)] = rootOf(parent, b.triangle);
             else
-                ++surface.seamEdges;
+                ++report.seamEdges;
         }
     }
-    std::pmr::vector<uint32_t> number(triangles.size(), kNone, memory);
+    std::pmr::vector<uint32_t> number(triangles.size(), kNone, surface.memory);
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         uint32_t& n = number[rootOf(parent, i)];
         if (n == kNone) n = surface.chartCount++;

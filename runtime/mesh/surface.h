@@ -107,15 +107,16 @@ struct Faces {
 };
 
 struct Surface {
-    explicit Surface(std::pmr::memory_resource* memory) : triangles(memory) {}
+    explicit Surface(std::pmr::memory_resource* of) : memory(of) {}
 
-    std::pmr::vector<Triangle> triangles;  // degenerate ones are not here
+    std::pmr::memory_resource* memory;             // of the bake
+    std::pmr::vector<Triangle> triangles{memory};  // degenerate ones are not here
     uint32_t pointCount = 0;
     uint32_t chartCount = 0;
     glm::dvec3 low{0}, high{0};  // m
     double extent = 0;           // m, longest side
     double area = 0;             // m^2
-    uint32_t degenerate = 0, openEdges = 0, nonManifoldEdges = 0, seamEdges = 0;
+    BakeReport report;           // of the steps so far
 };
 
 // How a triangle's texels lie on the surface: metres per texel along atlas u and v.
@@ -190,6 +191,6 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
                        std::pmr::memory_resource* memory);
 // Neighbours, seams and charts from the welded points and uv. Non-manifold edges are paired: UV
 // continuity first, then opposite winding; an edge left alone is open.
-void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* memory);
+void pairEdges(Surface& surface, bool uvMeaningful);
 
 }  // namespace fw::mesh

@@ -1,7 +1,7 @@
 // The bake's texel grid while the bake fills it: owner, place and links of each texel. Internal to
 // runtime/mesh.
 #pragma once
-#include "mesh/surface.h"
+#include "mesh/atlas.h"
 
 namespace fw::mesh {
 
@@ -69,39 +69,38 @@ struct TexelGrid {
 };
 
 // Texels, their owners, places and areas. Every part of the surface's area goes to some texel.
-TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, double density,
-                    BakeReport& report, std::pmr::memory_resource* memory);
+TexelGrid rasterise(const Surface& surface, const AtlasPlan& plan, BakeReport& report);
 // Finds a texel for area whose chart has none: a texel nearby on the surface of triangle `from`, or
 // (anywhere) the texel nearest to texel `hint` in the image. kNone if there is none.
 class AreaHeir {
  public:
-    AreaHeir(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory);
+    AreaHeir(const Surface& surface, const TexelGrid& grid);
     uint32_t onSurface(uint32_t from);
     uint32_t anywhere(uint32_t from, uint32_t hint);
 
  private:
     const Surface& surface_;
     const TexelGrid& grid_;
-    std::pmr::vector<uint32_t> texelOf_, visited_, queue_;
+    // By triangle: a texel of it; the last search that visited it.
+    std::pmr::vector<uint32_t> texelOf_, visited_;
+    std::pmr::vector<uint32_t> queue_{grid_.memory};
     uint32_t stamp_ = 0;
     // Limits the triangles that all searches visit; at 0 onSurface finds nothing. Where only few
     // triangles have texels, every search would cross the whole surface.
     uint32_t visitsLeft_ = 1u << 22;
 };
 // Link records of all texels whose ring differs from the image around them.
-void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report,
-                std::pmr::memory_resource* memory);
+void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report);
 void bakeThickness(const Surface& surface, const TexelGrid& grid,
-                   std::pmr::vector<uint16_t>& thickness, std::pmr::memory_resource* memory);
+                   std::pmr::vector<uint16_t>& thickness);
 void bakeSlowness(const BakeInput& input, const TexelGrid& grid, glm::dvec3 low, double extent,
                   std::pmr::vector<uint16_t>& slowness);
-void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory);
-void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain,
-                std::pmr::memory_resource* memory);
+void buildTiles(const TexelGrid& grid, BurnDomain& domain);
+void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain);
 // Bounds of every tile's real texels, for queries.
 void buildTileBounds(BurnDomain& domain);
 // Links parts that share no edge but come near each other: a roof on its walls, a cart's wheel.
-void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory);
+void linkParts(BurnDomain& domain);
 inline float floatAtLeast(double value) {
     const float near = float(value);
     return double(near) < value ? std::nextafter(near, 1e30f) : near;

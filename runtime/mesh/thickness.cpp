@@ -10,9 +10,9 @@ constexpr double kUnit = 1e-4;  // m per unit of thickness
 }  // namespace
 
 void bakeThickness(const Surface& surface, const TexelGrid& grid,
-                   std::pmr::vector<uint16_t>& thickness, std::pmr::memory_resource* memory) {
+                   std::pmr::vector<uint16_t>& thickness) {
     thickness.assign(grid.count(), 0xFFFF);
-    const RayTree tree(surface, memory);
+    const RayTree tree(surface);
     // Skips the texel's own surface, and its neighbours where the surface bends.
     const float least = float(std::max(0.01 * grid.side, 1e-5 * surface.extent));
     FW_ASSERT(least > 0, "%g m", double(least));

@@ -10,18 +10,14 @@ struct Read {  // tile `to` has a record that names a texel of tile `of`
     auto operator<=>(const Read&) const = default;
 };
 
-void setBit(uint32_t& low, uint32_t& high, uint32_t lane) {
-    (lane < 32 ? low : high) |= 1u << (lane & 31);
-}
-
 }  // namespace
 
-void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory) {
+void buildTiles(const TexelGrid& grid, BurnDomain& domain) {
     FW_ASSERT(grid.count() == domain.texelCount(), "%u and %u texels", grid.count(),
               domain.texelCount());
     FW_ASSERT(domain.links.empty() && domain.dependents.empty());
     domain.tiles.assign(domain.tileCount(), TileStatic{});
-    std::pmr::vector<Read> reads(memory);
+    std::pmr::vector<Read> reads(grid.memory);
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         TileStatic& tile = domain.tiles[t];
         tile.rimBase = uint32_t(domain.links.size() / 8);
@@ -29,15 +25,14 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_reso
         for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
             const uint32_t texel = texels[lane];
             if (!grid.real(texel) || grid.linkRecord[texel] == kNone) continue;
-            setBit(tile.rimMaskLow, tile.rimMaskHigh, lane);
+            tile.rimMask |= uint64_t(1) << lane;
             for (int k = 0; k < 8; ++k) {
                 const uint32_t link = grid.ring(texel, k);
                 domain.links.push_back(link);
                 const uint32_t of = link == kNone ? t : domain.tileOf(link);
                 if (of == t) continue;
                 reads.push_back({of, t});
-                TileStatic& source = domain.tiles[of];
-                setBit(source.seamMaskLow, source.seamMaskHigh, domain.laneOf(link));
+                domain.tiles[of].seamMask |= uint64_t(1) << domain.laneOf(link);
             }
         }
     }

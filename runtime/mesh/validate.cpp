@@ -17,8 +17,7 @@ void requireFinite(const char* array, std::span<const float> values, size_t widt
     for (size_t i = 0; i < values.size(); ++i) {
         const double value = values[i];
         if (std::isfinite(value) && std::abs(value) <= kCoordinateLimit) continue;
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             of == Of::lengths
                 ? "%s of vertex %zu, component %zu, is " FW_LENGTH
                   "; it must be finite and within +-" FW_LENGTH "."
@@ -29,23 +28,19 @@ void requireFinite(const char* array, std::span<const float> values, size_t widt
 
 // Elements of `width` values each.
 void requireCount(const char* array, size_t size, size_t width, const char* has) {
-    if (size == 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is empty; a mesh needs at least %s.", array, has);
+    if (size == 0) core::refuse("%s is empty; a mesh needs at least %s.", array, has);
     if (size % width != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has %zu elements; it must be a multiple of %zu.",
-                   array, size, width);
+        core::refuse("%s has %zu elements; it must be a multiple of %zu.", array, size, width);
 }
 
 void requireSize(const char* array, size_t size, size_t expected, const char* per) {
     if (size == 0 || size == expected) return;
-    core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has %zu elements; %s need %zu (or none).", array,
-               size, per, expected);
+    core::refuse("%s has %zu elements; %s need %zu (or none).", array, size, per, expected);
 }
 
 void requireRange(const char* name, double value, double low, double high) {
     if (value >= low && value <= high) return;
-    core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %g; it must lie in [%g, %g].", name, value, low,
-               high);
+    core::refuse("%s is %g; it must lie in [%g, %g].", name, value, low, high);
 }
 
 }  // namespace
@@ -56,9 +51,8 @@ void validate(const BakeInput& input) {
     const size_t vertices = input.positions.size() / 3;
     const size_t triangles = input.indices.size() / 3;
     if (vertices > kElementLimit || triangles > kElementLimit)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The mesh has %zu vertices and %zu triangles; the limit is %llu of each.",
-                   vertices, triangles, static_cast<unsigned long long>(kElementLimit));
+        core::refuse("The mesh has %zu vertices and %zu triangles; the limit is %llu of each.",
+                     vertices, triangles, static_cast<unsigned long long>(kElementLimit));
     requireSize("normals", input.normals.size(), vertices * 3, "the vertices");
     requireSize("uvs", input.uvs.size(), vertices * 2, "the vertices");
     requireSize("details", input.details.size(), vertices * 2, "the vertices");
@@ -70,17 +64,14 @@ void validate(const BakeInput& input) {
     requireFinite("Detail coordinate", input.details, 2, Of::lengths);
     for (size_t i = 0; i < input.indices.size(); ++i)
         if (input.indices[i] >= vertices)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Index %zu (corner %zu of triangle %zu) is %u; the mesh has %zu vertices.",
-                       i, i % 3, i / 3, input.indices[i], vertices);
+            core::refuse("Index %zu (corner %zu of triangle %zu) is %u; the mesh has %zu vertices.",
+                         i, i % 3, i / 3, input.indices[i], vertices);
     for (size_t i = 0; i < input.triangleMaterials.size(); ++i)
         if (input.triangleMaterials[i] >= 8)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Material of triangle %zu is %u; it must be less than 8.", i,
-                       static_cast<unsigned>(input.triangleMaterials[i]));
+            core::refuse("Material of triangle %zu is %u; it must be less than 8.", i,
+                         static_cast<unsigned>(input.triangleMaterials[i]));
     if (!(input.texelsPerMetre > 0) || input.texelsPerMetre > 4096)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "texelsPerMetre is %g; it must lie in (0, 4096].",
-                   input.texelsPerMetre);
+        core::refuse("texelsPerMetre is %g; it must lie in (0, 4096].", input.texelsPerMetre);
     requireRange("maxSide", input.maxSide, 8, 4096);
     requireRange("noiseAmplitude", static_cast<double>(input.noiseAmplitude), 0, 0.5);
     requireRange("noiseFeature", static_cast<double>(input.noiseFeature), 1e-5, 1e3);

@@ -145,17 +145,14 @@ bool shades(const Collider& c, vec3 source, vec3 point) noexcept {
             return awayFrom(source, point, c.place, c.extent) < radius * radius;
         case ColliderKind::Box:
             return crossesBox(c, source, point);
-        case ColliderKind::Plane:
-            return false;
         case ColliderKind::HeightField:
             return feels(c, source,
                          point + surfaceOf(c, point).normal * std::max(kSkin - here, 0.0f));
         case ColliderKind::Callback:
             return feels(c, source, point);
-        case ColliderKind::Depth:
+        default:
             return false;
     }
-    return false;
 }
 
 Surface surfaceOf(const Collider& c, vec3 point) noexcept {

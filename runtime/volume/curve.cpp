@@ -13,11 +13,6 @@ constexpr float kTiny = 1e-6f;           // m
 constexpr float kPlaneMargin = 0.9f;     // of the radius at which two bisector planes meet
 constexpr float kSteepestRadius = 1.0f;  // m per m along: a clamped radius does not jump
 
-vec3 anyNormalTo(vec3 t) noexcept {
-    const vec3 axis = std::abs(t.x) < 0.8f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
-    return glm::normalize(axis - t * glm::dot(axis, t));
-}
-
 // Double reflection (Wang, Jüttler, Zheng, Liu 2008): the next frame's side.
 vec3 nextSide(vec3 from, vec3 to, vec3 tangent, vec3 nextTangent, vec3 side) noexcept {
     const vec3 v1 = to - from;

@@ -4,8 +4,6 @@
 #pragma once
 #include "shared/volume.h"
 
-#include <glm/mat4x4.hpp>
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,10 +26,10 @@ inline vec3 turned(vec4 q, vec3 v) noexcept {
     const vec3 u(q);
     return v + 2.0f * glm::cross(u, glm::cross(u, v) + q.w * v);
 }
-inline glm::mat4 matrixOf(const float m[16]) noexcept {
-    glm::mat4 out;
-    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
-    return out;
+// A unit vector across a unit vector.
+inline vec3 anyNormalTo(vec3 t) noexcept {
+    const vec3 axis = std::abs(t.x) < 0.8f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
+    return glm::normalize(axis - t * glm::dot(axis, t));
 }
 inline vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
 

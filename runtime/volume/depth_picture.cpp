@@ -5,6 +5,7 @@
 #include "core/error.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -167,7 +168,7 @@ void meetShelf(const DepthPicture& picture, float reach, vec3 off, Nearest& near
 
 void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint32_t columns,
                      uint32_t rows, const float view[16], const float projection[16]) {
-    const glm::mat4 toView = matrixOf(view), toScreen = matrixOf(projection);
+    const glm::mat4 toView = glm::make_mat4(view), toScreen = glm::make_mat4(projection);
     const glm::mat3 rotation(toView);  // rigid: the inverse is the transpose
     const glm::mat4 toClip = toScreen * glm::mat4(rotation);
     const glm::mat4 fromClip = glm::inverse(toClip);

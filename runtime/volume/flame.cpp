@@ -3,6 +3,7 @@
 
 #include "core/assert.h"
 #include "core/hash.h"
+#include "shared/volume_march.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,6 +130,24 @@ float clampPower(float power) noexcept {
 }
 
 }  // namespace
+
+float topOf(const gpu::FlameRecord& flame) noexcept {
+    return flame.high.w * std::max(gpu::kFlameTop, flame.smoke > 0.0f ? flame.smokeTop : 0.0f);
+}
+
+Bounds flameBounds(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes) noexcept {
+    Bounds b{vec3(nodes.empty() ? 0.0f : 1e30f), vec3(nodes.empty() ? 0.0f : -1e30f)};
+    for (size_t k = 0; k + 1 < nodes.size(); ++k) {
+        if (nodes[k].along.w > topOf(flame)) break;
+        const gpu::FlameNode &a = nodes[k], &next = nodes[k + 1];
+        const vec3 reach(gpu::flameReachAt(flame, a.along.w, next.along.w,
+                                           std::max(a.centre.w, next.centre.w),
+                                           std::max(a.side.w, next.side.w)));
+        for (const vec3 c : {vec3(a.centre), vec3(next.centre)})
+            b.low = glm::min(b.low, c - reach), b.high = glm::max(b.high, c + reach);
+    }
+    return b;
+}
 
 FlameLight meanLight(const FlameDef& def) noexcept {
     Flame f;

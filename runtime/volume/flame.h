@@ -1,9 +1,9 @@
 // One volumetric flame: its def, its motion, and its output for drawing, lighting and gameplay.
 // Plain data and functions; owns no device memory and, except for a track, no heap.
 #pragma once
-#include "volume/march.h"
 #include "volume/motion.h"
 #include "volume/neighbours.h"
+#include "volume/profile.h"
 
 namespace fw::volume {
 
@@ -31,6 +31,10 @@ struct FlameLight {       // one per flame
     float flux = 0.0f;    // lm
 };
 
+// m along the curve, end of the visible flame and smoke.
+float topOf(const gpu::FlameRecord& flame) noexcept;
+// Conservative bounds of the visible flame and smoke.
+Bounds flameBounds(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes) noexcept;
 // The light of a new flame, without flicker.
 FlameLight meanLight(const FlameDef& def) noexcept;
 

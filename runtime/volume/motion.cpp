@@ -60,8 +60,7 @@ void collide(CurveParticle& p, const MotionRules& r, std::span<const Collider> c
     float l = glm::length(slide);
     if (l < 0.05f * speed) {  // head on: particles turn aside, neighbours in similar directions
         const float a = kTwoPi * (unitHash(r.seed) + 0.06f * float(p.number));
-        const vec3 side = glm::abs(s.normal.x) < 0.8f ? vec3(1, 0, 0) : vec3(0, 0, 1);
-        const vec3 u = glm::normalize(side - s.normal * glm::dot(side, s.normal));
+        const vec3 u = anyNormalTo(s.normal);
         slide += 0.05f * speed * (std::cos(a) * u + std::sin(a) * glm::cross(s.normal, u));
         l = glm::length(slide);
     }
@@ -92,8 +91,7 @@ void step(FlameMotion& m, const MotionRules& r, std::span<const Collider> collid
         const float seed = 97.0f * unitHash(r.seed);
         const float a = gpu::flameNoise(vec3(place, when, seed)),
                     b = gpu::flameNoise(vec3(place + 57.7f, when, seed));
-        vec3 u = std::abs(r.up.x) < 0.8f ? vec3(1, 0, 0) : vec3(0, 0, 1);
-        u = glm::normalize(u - r.up * glm::dot(u, r.up));
+        const vec3 u = anyNormalTo(r.up);
         const vec3 aim =
             (r.dispersion * heat * std::abs(faster)) * (a * u + b * glm::cross(r.up, u));
         p.stray += (aim - p.stray) * stray;

@@ -12,6 +12,8 @@
 namespace fw::volume {
 namespace {
 
+using core::wordAt;
+
 constexpr uint32_t kMagic = 0x50465746;  // "FWFP"
 constexpr uint32_t kVersion = 1;
 constexpr size_t kSumAt = 16, kHeaderBytes = 24;
@@ -37,43 +39,51 @@ void checkSize(uint32_t width, uint32_t height) {
                        height, kMinProfileSide, kMaxProfileSide);
 }
 
-// `read(x, y)`: a texel of the source. Bilinear, texel centres on texel centres.
+// Between texels, clamped at the borders; texel centres are whole numbers.
+template <typename Read>
+gpu::vec2 bilinear(uint32_t width, uint32_t height, float u, float v, const Read& read) {
+    FW_ASSERT(width > 0 && height > 0, "%u x %u texels", width, height);
+    u = std::max(u, 0.0f), v = std::max(v, 0.0f);
+    const uint32_t x0 = std::min(uint32_t(u), width - 1), x1 = std::min(x0 + 1, width - 1);
+    const uint32_t y0 = std::min(uint32_t(v), height - 1), y1 = std::min(y0 + 1, height - 1);
+    const float fu = u - float(x0), fv = v - float(y0);
+    return glm::mix(glm::mix(read(x0, y0), read(x1, y0), fu),
+                    glm::mix(read(x0, y1), read(x1, y1), fu), fv);
+}
+
+// `read(x, y)`: a texel of the source. Texel centres on texel centres.
 template <typename Read>
 void resample(uint32_t width, uint32_t height, const Read& read, Profile& out) {
-    FW_ASSERT(width > 0 && height > 0, "%u x %u texels", width, height);
+    Profile made;
     bool burns = false;
     for (uint32_t y = 0; y < kH; ++y)
         for (uint32_t x = 0; x < kW; ++x) {
-            const float u = std::max((float(x) + 0.5f) * float(width) / float(kW) - 0.5f, 0.0f);
-            const float v = std::max((float(y) + 0.5f) * float(height) / float(kH) - 0.5f, 0.0f);
-            const uint32_t x0 = std::min(uint32_t(u), width - 1), x1 = std::min(x0 + 1, width - 1);
-            const uint32_t y0 = std::min(uint32_t(v), height - 1),
-                           y1 = std::min(y0 + 1, height - 1);
-            const float fu = u - float(x0), fv = v - float(y0);
-            const gpu::vec2 texel = glm::mix(glm::mix(read(x0, y0), read(x1, y0), fu),
-                                             glm::mix(read(x0, y1), read(x1, y1), fu), fv);
+            const float u = (float(x) + 0.5f) * float(width) / float(kW) - 0.5f;
+            const float v = (float(y) + 0.5f) * float(height) / float(kH) - 0.5f;
+            const gpu::vec2 texel = bilinear(width, height, u, v, read);
             burns = burns || burning(texel) > 0.0f;
-            out.texels[y * kW + x] = glm::packHalf2x16(texel);
+            made.texels[y * kW + x] = glm::packHalf2x16(texel);
         }
     if (!burns)
         core::failData(
             "the fire profile holds neither soot nor hot gas; at least one texel must be above 0.");
+    out = made;
+}
+
+// Covers everything except the checksum itself.
+uint64_t checksum(std::span<const std::byte> bytes) {
+    return core::hashBytes(bytes.subspan(kHeaderBytes), core::hashBytes(bytes.first(kSumAt)));
 }
 
 }  // namespace
 
 gpu::vec2 Profile::sample(float rho, float y) const noexcept {
     if (y >= 1.0f || y < 0.0f) return gpu::vec2(0.0f);
-    const float u = std::clamp(rho / gpu::kProfileReach * float(kW) - 0.5f, 0.0f, float(kW - 1));
-    const float v = std::clamp(y * float(kH) - 0.5f, 0.0f, float(kH - 1));
-    const uint32_t x0 = uint32_t(u), y0 = uint32_t(v);
-    const uint32_t x1 = std::min(x0 + 1, kW - 1), y1 = std::min(y0 + 1, kH - 1);
-    FW_ASSERT(x0 < kW && y0 < kH, "texel (%u, %u)", x0, y0);
-    const auto at = [&](uint32_t x, uint32_t row) {
-        return glm::unpackHalf2x16(texels[row * kW + x]);
-    };
-    return glm::mix(glm::mix(at(x0, y0), at(x1, y0), u - float(x0)),
-                    glm::mix(at(x0, y1), at(x1, y1), u - float(x0)), v - float(y0));
+    const float u = std::min(rho / gpu::kProfileReach * float(kW) - 0.5f, float(kW - 1));
+    const float v = std::min(y * float(kH) - 0.5f, float(kH - 1));
+    return bilinear(kW, kH, u, v, [&](uint32_t column, uint32_t row) {
+        return glm::unpackHalf2x16(texels[row * kW + column]);
+    });
 }
 
 void paintProfile(std::span<const float> kelvin, std::span<const float> soot, uint32_t width,
@@ -87,27 +97,12 @@ void paintProfile(std::span<const float> kelvin, std::span<const float> soot, ui
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
             checkTexel(kelvin[size_t(y) * width + x], soot[size_t(y) * width + x], x, y);
-    Profile made;
-    resample(
-        width, height,
-        [&](uint32_t x, uint32_t y) {
-            const size_t k = size_t(y) * width + x;
-            return gpu::vec2(0.001f * kelvin[k], soot[k]);
-        },
-        made);
-    profile = made;
+    const auto texel = [&](uint32_t x, uint32_t y) {
+        const size_t k = size_t(y) * width + x;
+        return gpu::vec2(0.001f * kelvin[k], soot[k]);
+    };
+    resample(width, height, texel, profile);
 }
-
-namespace {
-
-using core::wordAt;
-
-// Covers everything except the checksum itself.
-uint64_t checksum(std::span<const std::byte> bytes) {
-    return core::hashBytes(bytes.subspan(kHeaderBytes), core::hashBytes(bytes.first(kSumAt)));
-}
-
-}  // namespace
 
 std::pmr::vector<std::byte> cookProfile(const Profile& profile, std::pmr::memory_resource* memory) {
     std::pmr::vector<std::byte> out(memory);
@@ -136,9 +131,7 @@ void readProfile(std::span<const std::byte> bytes, Profile& profile) {
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
             checkTexel(1000.0f * texel(x, y).x, texel(x, y).y, x, y);
-    Profile made;
-    resample(width, height, texel, made);
-    profile = made;
+    resample(width, height, texel, profile);
 }
 
 }  // namespace fw::volume

@@ -1,7 +1,7 @@
 // A burn that goes on on another object: what each of its texels gets is found here, once; the step
 // that begins next copies it, on whatever backend.
-#include "mesh/carry.h"
 #include "core/reserved.h"
+#include "mesh/bake.h"
 #include "world/burn_system.h"
 #include "world/recording.h"
 

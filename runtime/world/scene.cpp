@@ -6,7 +6,6 @@
 #include "core/growth.h"
 #include "core/reserved.h"
 #include "mesh/bake.h"
-#include "mesh/shaped.h"
 #include "world/geometry.h"
 #include "world/material.h"
 #include "world/mesh_input.h"

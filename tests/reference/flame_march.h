@@ -1,7 +1,8 @@
 // The march of one ray through a flame on the CPU, by the shader's own text: the reference for the
 // march pass.
 #pragma once
-#include "volume/march.h"
+#include "reference/flame_chord.h"
+#include "volume/flame.h"
 
 namespace fw::volume {
 

@@ -1,5 +1,5 @@
 // Matching of texels between two meshes for a transferred burn: the matches and the search time.
-#include "mesh/carry.h"
+#include "mesh/bake.h"
 #include "mesh_checks.h"
 
 #include <chrono>

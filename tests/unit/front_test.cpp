@@ -359,8 +359,7 @@ TEST(Front, ArrivalOnASphereMatchesGreatCircles) {
                 const mesh::TileStatic& statics = d.tiles[tile];
                 uint32_t record = statics.rimBase;
                 for (uint32_t lane = 0; lane < 64; ++lane) {
-                    const uint32_t half = lane < 32 ? statics.rimMaskLow : statics.rimMaskHigh;
-                    if ((half >> (lane & 31) & 1) == 0) continue;
+                    if ((statics.rimMask >> lane & 1) == 0) continue;
                     const uint32_t i =
                         (tile / d.tilesX * 8 + lane / 8) * d.width + tile % d.tilesX * 8 + lane % 8;
                     for (uint32_t k = 0; k < 8; ++k) {

@@ -43,7 +43,6 @@ inline uint32_t tileOf(const BurnDomain& d, uint32_t texel) {
 inline uint32_t laneOf(const BurnDomain& d, uint32_t texel) {
     return texel / d.width % 8 * 8 + texel % d.width % 8;
 }
-inline uint64_t maskOf(uint32_t low, uint32_t high) { return uint64_t(high) << 32 | low; }
 inline bool isRim(const BurnDomain& d, uint32_t texel) {
     return (d.texels[texel].materialFlags & mesh::kTexelRim) != 0;
 }
@@ -51,7 +50,7 @@ inline bool isRim(const BurnDomain& d, uint32_t texel) {
 // The neighbour that a texel reads in ring direction k, found as the simulation does.
 inline uint32_t ringOf(const BurnDomain& d, uint32_t texel, uint32_t k) {
     const mesh::TileStatic& tile = d.tiles[tileOf(d, texel)];
-    const uint64_t rim = maskOf(tile.rimMaskLow, tile.rimMaskHigh);
+    const uint64_t rim = tile.rimMask;
     const uint32_t lane = laneOf(d, texel);
     if ((rim >> lane & 1) == 0)
         return uint32_t(int(texel) + mesh::kRingY[k] * int(d.width) + mesh::kRingX[k]);
@@ -86,7 +85,7 @@ inline void expectSound(const BurnDomain& d) {
     double area = 0;
     for (uint32_t i = 0; i < d.texelCount(); ++i) {
         const uint32_t t = tileOf(d, i), flags = d.texels[i].materialFlags;
-        const uint64_t rim = maskOf(d.tiles[t].rimMaskLow, d.tiles[t].rimMaskHigh);
+        const uint64_t rim = d.tiles[t].rimMask;
         badFlags += ((rim >> laneOf(d, i) & 1) != 0) != isRim(d, i);
         badFlags += (d.slowness[i] != 0) != d.real(i);
         badFlags += (d.triangleOf[i] != kNone) != d.real(i);
@@ -127,7 +126,7 @@ inline void expectSound(const BurnDomain& d) {
         listed += tile.dependentCount;
         for (uint32_t r = 0; r < tile.dependentCount; ++r)
             unread += reads.count({t, d.dependents[tile.dependentStart + r]}) == 0;
-        unread += maskOf(tile.seamMaskLow, tile.seamMaskHigh) != seam[t];
+        unread += tile.seamMask != seam[t];
     }
     EXPECT_EQ(reads.size(), listed) << "dependent tiles by links, and those listed";
     EXPECT_EQ(0u, unread) << "dependent tiles or seam masks without a link";

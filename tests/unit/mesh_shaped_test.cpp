@@ -1,6 +1,5 @@
 // A stretched burn domain against the geometry of the stretched mesh.
 #include "mesh/bake.h"
-#include "mesh/shaped.h"
 #include "shared/front.h"
 #include "support/meshes.h"
 

@@ -1,5 +1,5 @@
 // Ragged holes: noise makes slots burn through earlier or later, the same on both sides of a wall.
-#include "mesh/refine/roughen.h"
+#include "mesh/refine/model.h"
 #include "support/refine_scene.h"
 
 #include <gtest/gtest.h>

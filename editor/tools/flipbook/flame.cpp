@@ -4,8 +4,8 @@
 #include "flame_flipbook.h"
 
 #include "core/error.h"
+#include "reference/flame_chord.h"
 #include "volume/flame.h"
-#include "volume/march.h"
 
 #include "shared/black_body.h"
 

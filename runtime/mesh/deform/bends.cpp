@@ -1,5 +1,4 @@
-#include "mesh/deform/bends.h"
-
+#include "mesh/deform/model.h"
 #include "mesh/surface.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "mesh/deform/model.h"
 
 #include "mesh/bake.h"
-#include "mesh/deform/bends.h"
 #include "mesh/surface.h"
 
 #include <algorithm>
@@ -122,42 +121,39 @@ bool walk(std::pmr::vector<Step>& steps, std::pmr::vector<uint32_t>& out,
     return bestCloses;
 }
 
-class Builder {
- public:
-    Builder(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory)
-        : domain_(domain),
-          model_(model),
-          corners_(groupBy(uint32_t(model.particles.size()), uint32_t(domain.indices.size()),
-                           memory,
-                           [&](uint32_t i) { return model.particleOf[domain.indices[i]]; })),
-          triangleTexels_(groupBy(uint32_t(domain.indices.size() / 3), domain.texelCount(), memory,
-                                  [&](uint32_t texel) {
-                                      return domain.real(texel) ? domain.triangleOf[texel] : kNone;
-                                  })),
-          steps_(memory),
-          walk_(memory),
-          best_(memory),
-          texels_(memory) {}
+struct Builder {
+    const BurnDomain& domain;
+    DeformModel& model;
+    std::pmr::memory_resource* memory;
+    // By particle: triangle * 3 + corner.
+    Groups corners =
+        groupBy(uint32_t(model.particles.size()), uint32_t(domain.indices.size()), memory,
+                [this](uint32_t i) { return model.particleOf[domain.indices[i]]; });
+    // By triangle: its real texels.
+    Groups triangleTexels = groupBy(
+        uint32_t(domain.indices.size() / 3), domain.texelCount(), memory,
+        [this](uint32_t texel) { return domain.real(texel) ? domain.triangleOf[texel] : kNone; });
+    std::pmr::vector<Step> steps{memory};
+    std::pmr::vector<uint32_t> path{memory}, best{memory}, texels{memory};
 
     void run() {
-        for (uint32_t i = 0; i < model_.particles.size(); ++i) {
+        for (uint32_t i = 0; i < model.particles.size(); ++i) {
             offset(i);
             sample(i);
             neighbours(i);
         }
         lengths();
-        for (uint32_t i = 0; i < domain_.vertices.size(); ++i) embed(i);
+        for (uint32_t i = 0; i < domain.vertices.size(); ++i) embed(i);
     }
 
- private:
     [[nodiscard]] uint32_t vertexAt(uint32_t triangle, uint32_t corner) const {
-        return domain_.indices[size_t(triangle) * 3 + corner % 3];
+        return domain.indices[size_t(triangle) * 3 + corner % 3];
     }
     [[nodiscard]] glm::dvec3 cornerPlace(uint32_t triangle, uint32_t corner) const {
-        return placeOf(domain_.cornerOf(triangle, corner % 3));
+        return placeOf(domain.cornerOf(triangle, corner % 3));
     }
     [[nodiscard]] uint32_t keeperAt(uint32_t triangle, uint32_t corner) const {
-        return model_.particles[model_.particleOf[vertexAt(triangle, corner)]].vertex;
+        return model.particles[model.particleOf[vertexAt(triangle, corner)]].vertex;
     }
     [[nodiscard]] glm::dvec3 areaNormal(uint32_t triangle) const {  // twice the area long
         const glm::dvec3 a = cornerPlace(triangle, 0);
@@ -166,10 +162,10 @@ class Builder {
 
     // Direction in which the particle recedes (see Faces), and its limit by the triangles around.
     void offset(uint32_t number) {
-        DeformParticle& particle = model_.particles[number];
+        DeformParticle& particle = model.particles[number];
         Faces faces;
         double altitude = 1e30, area = 0;
-        for (const uint32_t corner : corners_.of(number)) {
+        for (const uint32_t corner : corners.of(number)) {
             const uint32_t triangle = corner / 3;
             const glm::dvec3 twice = areaNormal(triangle);
             const double size = glm::length(twice);
@@ -201,44 +197,44 @@ class Builder {
     // The texels that a particle samples, spread over its ring like the texels of one mip of its
     // burn map; and the wall behind.
     void sample(uint32_t number) {
-        DeformParticle& particle = model_.particles[number];
-        texels_.clear();
+        DeformParticle& particle = model.particles[number];
+        texels.clear();
         uint32_t material = 0;
-        for (const uint32_t corner : corners_.of(number)) {
+        for (const uint32_t corner : corners.of(number)) {
             const uint32_t triangle = corner / 3;
-            material = domain_.vertices[domain_.indices[corner]].material;
-            const std::span<const uint32_t> own = triangleTexels_.of(triangle);
-            texels_.insert(texels_.end(), own.begin(), own.end());
+            material = domain.vertices[domain.indices[corner]].material;
+            const std::span<const uint32_t> own = triangleTexels.of(triangle);
+            texels.insert(texels.end(), own.begin(), own.end());
         }
         particle.flags = material & 7u;
-        const uint32_t mip = gpu::mipOfRing(uint32_t(texels_.size()), kDeformTexels);
+        const uint32_t mip = gpu::mipOfRing(uint32_t(texels.size()), kDeformTexels);
         const uint32_t mask = (1u << mip) - 1, half = mask / 2;
         const auto central = [&](uint32_t texel) {
-            return (texel % domain_.width & mask) == half && (texel / domain_.width & mask) == half;
+            return (texel % domain.width & mask) == half && (texel / domain.width & mask) == half;
         };
         // Texels in the middle of a texel of the mip come first.
-        std::stable_partition(texels_.begin(), texels_.end(), central);
-        const auto middles = size_t(std::count_if(texels_.begin(), texels_.end(), central));
-        const size_t from = middles >= kDeformTexels / 2 ? middles : texels_.size();
+        std::stable_partition(texels.begin(), texels.end(), central);
+        const auto middles = size_t(std::count_if(texels.begin(), texels.end(), central));
+        const size_t from = middles >= kDeformTexels / 2 ? middles : texels.size();
         const size_t taken = std::min<size_t>(from, kDeformTexels);
-        for (size_t i = 0; i < taken; ++i) particle.texels[i] = texels_[i * from / taken];
+        for (size_t i = 0; i < taken; ++i) particle.texels[i] = texels[i * from / taken];
         const float place[3] = {particle.x, particle.y, particle.z};
-        if (taken == 0) particle.texels[0] = nearestTexel(domain_, place, 1e6f);
+        if (taken == 0) particle.texels[0] = nearestTexel(domain, place, 1e6f);
 
         double thin = kNoWall;
         for (const uint32_t texel : particle.texels)
-            if (texel != kNone && domain_.thickness[texel] != 0xFFFF)
-                thin = std::min(thin, double(domain_.thickness[texel]) * 1e-4);
+            if (texel != kNone && domain.thickness[texel] != 0xFFFF)
+                thin = std::min(thin, double(domain.thickness[texel]) * 1e-4);
         const glm::dvec3 out(double(particle.outX), double(particle.outY), double(particle.outZ));
         const double stretch = std::max(glm::length(out), 1e-6);
         particle.limit = float(std::min(double(particle.limit), kDepthShare * thin / stretch));
         if (thin > kThickest || particle.texels[0] == kNone) return;
         const glm::dvec3 behind = restOf(particle) + out / stretch * thin;
         const float point[3] = {float(behind.x), float(behind.y), float(behind.z)};
-        const float reach = float(0.5 * thin) + domain_.texelSide;
-        const uint32_t texel = nearestTexel(domain_, point, reach);
+        const float reach = float(0.5 * thin) + domain.texelSide;
+        const uint32_t texel = nearestTexel(domain, point, reach);
         if (texel == kNone) return;
-        const glm::vec3 facing = gpu::unpackDirection(domain_.normals[texel]);
+        const glm::vec3 facing = gpu::unpackDirection(domain.normals[texel]);
         if (glm::dot(facing, glm::vec3(out / stretch)) > 0.3f) particle.opposite = texel;
     }
 
@@ -247,17 +243,17 @@ class Builder {
         const uint32_t triangle = corner / 3;
         const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
         if (step.from != step.to && step.from != center && step.to != center &&
-            steps_.size() < kMostSteps)
-            steps_.push_back(step);
+            steps.size() < kMostSteps)
+            steps.push_back(step);
     }
 
     // Puts the steps' longest walk into a ring; a closed one may end with its first entry, for
     // which `repeats` slots stay free. Returns whether the walk closes, and its entries.
     std::pair<bool, size_t> fillRing(uint32_t (&ring)[kDeformRing], size_t repeats) {
-        const bool closes = walk(steps_, walk_, best_);
-        const size_t all = best_.size();
+        const bool closes = walk(steps, path, best);
+        const size_t all = best.size();
         const size_t kept = std::min<size_t>(all, kDeformRing - (closes ? repeats : 0));
-        for (size_t i = 0; i < kept; ++i) ring[i] = best_[i * all / kept];
+        for (size_t i = 0; i < kept; ++i) ring[i] = best[i * all / kept];
         // Repeats the last one: loops over eight neighbours see no triangle between equal ones.
         for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
             ring[i] = closes ? ring[0] : ring[kept - 1];
@@ -267,32 +263,32 @@ class Builder {
 
     // Neighbours in their order around the particle.
     void neighbours(uint32_t number) {
-        DeformParticle& particle = model_.particles[number];
-        steps_.clear();
-        for (const uint32_t corner : corners_.of(number)) addStep(corner, particle.vertex);
+        DeformParticle& particle = model.particles[number];
+        steps.clear();
+        for (const uint32_t corner : corners.of(number)) addStep(corner, particle.vertex);
         const auto [closes, kept] = fillRing(particle.ring, 0);
         particle.flags |= (closes ? gpu::kParticleClosed : 0u) | uint32_t(kept)
                                                                      << gpu::kParticleRingShift;
     }
     [[nodiscard]] float restLength(const DeformParticle& particle, uint32_t vertex) const {
         return float(
-            glm::length(restOf(model_.particles[model_.particleOf[vertex]]) - restOf(particle)));
+            glm::length(restOf(model.particles[model.particleOf[vertex]]) - restOf(particle)));
     }
     // A link that only one end lists gets no length: forces need both ends.
     void lengths() {
-        for (DeformParticle& particle : model_.particles) {
+        for (DeformParticle& particle : model.particles) {
             glm::dvec3 mean(0), turned(0), before(0), first(0);
             double links = 0;
             const auto mutual = [&](uint32_t vertex) {
-                const uint32_t* list = model_.particles[model_.particleOf[vertex]].ring;
+                const uint32_t* list = model.particles[model.particleOf[vertex]].ring;
                 return vertex != particle.vertex &&
                        std::find(list, list + kDeformRing, particle.vertex) != list + kDeformRing;
             };
             float ring[kDeformRing]{};
             const uint32_t count = particle.flags >> gpu::kParticleRingShift & 15u;
             for (uint32_t i = 0; i < kDeformRing; ++i) {
-                const glm::dvec3 arm = placeOf(domain_.vertices[particle.ring[i]]) -
-                                       placeOf(domain_.vertices[particle.vertex]);
+                const glm::dvec3 arm = placeOf(domain.vertices[particle.ring[i]]) -
+                                       placeOf(domain.vertices[particle.vertex]);
                 turned += glm::cross(before, arm);
                 before = arm;
                 if (i == 0) first = arm;
@@ -317,41 +313,34 @@ class Builder {
 
     // A drawn normal turns with the triangles that share it.
     void embed(uint32_t vertex) {
-        const RenderVertex& v = domain_.vertices[vertex];
-        const uint32_t particle = model_.particleOf[vertex];
+        const RenderVertex& v = domain.vertices[vertex];
+        const uint32_t particle = model.particleOf[vertex];
         DeformEmbedding made{};
-        made.node = model_.particles[particle].vertex;
+        made.node = model.particles[particle].vertex;
         made.normal = v.normal;
-        steps_.clear();
+        steps.clear();
         glm::dvec3 face(0);
-        for (const uint32_t corner : corners_.of(particle))
-            if (domain_.vertices[domain_.indices[corner]].normal == v.normal)
+        for (const uint32_t corner : corners.of(particle))
+            if (domain.vertices[domain.indices[corner]].normal == v.normal)
                 addStep(corner, made.node);
         std::fill_n(made.ring, kDeformRing, made.node);
         fillRing(made.ring, 1);
         const glm::dvec3 at = placeOf(v);
         for (const uint32_t other : made.ring) {
-            const glm::dvec3 edge = placeOf(domain_.vertices[other]) - at;
+            const glm::dvec3 edge = placeOf(domain.vertices[other]) - at;
             made.longest = std::max(made.longest, float(glm::dot(edge, edge)));
         }
         for (size_t i = 0; i + 1 < kDeformRing; ++i)
-            face += glm::cross(placeOf(domain_.vertices[made.ring[i]]) - at,
-                               placeOf(domain_.vertices[made.ring[i + 1]]) - at);
+            face += glm::cross(placeOf(domain.vertices[made.ring[i]]) - at,
+                               placeOf(domain.vertices[made.ring[i + 1]]) - at);
         face = unitOr(face, glm::dvec3(0));
         made.faceX = float(face.x);
         made.faceY = float(face.y);
         made.faceZ = float(face.z);
-        FW_ASSERT(model_.embeddings.size() == vertex, "%zu embeddings, vertex %u",
-                  model_.embeddings.size(), vertex);
-        model_.embeddings.push_back(made);
+        FW_ASSERT(model.embeddings.size() == vertex, "%zu embeddings, vertex %u",
+                  model.embeddings.size(), vertex);
+        model.embeddings.push_back(made);
     }
-
-    const BurnDomain& domain_;
-    DeformModel& model_;
-    Groups corners_;         // by particle: triangle * 3 + corner
-    Groups triangleTexels_;  // by triangle: its real texels
-    std::pmr::vector<Step> steps_;
-    std::pmr::vector<uint32_t> walk_, best_, texels_;
 };
 
 // Sorts particles by their number of neighbours within each group, and notes per run of particles
@@ -402,7 +391,7 @@ DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource*
     DeformModel model(memory);
     weld(domain, model, memory);
     model.embeddings.reserve(domain.vertices.size());
-    Builder(domain, model, memory).run();
+    Builder{domain, model, memory}.run();
     findBends(model, memory);
     makeRuns(model, memory);
     return model;

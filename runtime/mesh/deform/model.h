@@ -23,6 +23,12 @@ struct DeformModel {
 // Vertices at one place are one particle, whatever their normals and UVs.
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory);
 
+// Sets DeformModel::span and the particles' bending constraints: two particles some distance apart
+// with a third in their middle. They bend a sheet more widely than neighbours do
+// (shared/deform.h). Closed meshes are stiff and have none. Of makeDeformModel; needs particles
+// with rings and areas, and embeddings.
+void findBends(DeformModel& model, std::pmr::memory_resource* memory);
+
 // A particle in the device's form: other particles by number, with the odds of their links.
 gpu::DeviceParticle deviceParticle(const DeformModel& model, uint32_t number) noexcept;
 // Writes record `number` of `count` (particles or embeddings) in the device's order: quad by quad.

@@ -48,7 +48,7 @@ FrontTile runFrontTile(const FrontArrays& arrays, uint32_t tile, uint32_t window
     int offsets[8];
     for (int k = 0; k < 8; ++k) offsets[k] = kRingX[k] + kRingY[k] * width;
     const TileStatic& statics = arrays.tiles[tile];
-    const uint64_t rimMask = statics.rimMask();
+    const uint64_t rimMask = statics.rimMask;
     const uint32_t corner =
         (tile / arrays.tilesX) * 8u * arrays.width + (tile % arrays.tilesX) * 8u;
 

@@ -66,7 +66,7 @@ inline std::span<const uint32_t> seamDependents(const BurnDomain& domain, uint32
                                                 uint64_t mask) noexcept {
     FW_ASSERT(tile < domain.tiles.size(), "%u of %zu tiles", tile, domain.tiles.size());
     const TileStatic& statics = domain.tiles[tile];
-    if ((statics.seamMask() & mask) == 0) return {};
+    if ((statics.seamMask & mask) == 0) return {};
     FW_ASSERT(statics.dependentStart + statics.dependentCount <= domain.dependents.size(),
               "%u readers", statics.dependentCount);
     return {domain.dependents.data() + statics.dependentStart, statics.dependentCount};

@@ -46,28 +46,29 @@ Surface surfaceOf(const BurnDomain& domain, std::pmr::memory_resource* memory) {
     input.uvs = uvs;
     input.indices = domain.indices;
     Surface surface = collectSurface(input, kWeldTexels * double(domain.texelSide), memory);
-    pairEdges(surface, true, memory);
+    pairEdges(surface, true);
     return surface;
 }
 
-CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
-                      std::pmr::memory_resource* memory) {
-    CoarseMesh base(memory);
+CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most) {
+    CoarseMesh base(surface.memory);
     base.points.resize(surface.pointCount);
     base.triangles.reserve(surface.triangles.size());
     for (uint32_t i = 0; i < surface.triangles.size(); ++i) {
         const Triangle& t = surface.triangles[i];
-        CoarseTriangle c{{t.point[0], t.point[1], t.point[2]},
-                         {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)},
-                         i};
-        for (uint32_t k : {2u, 1u, 0u}) base.points[t.point[k]] = t.position[k];
+        CoarseTriangle c{{}, {}, i};
+        for (int k = 2; k >= 0; --k) {
+            c.weight[k][k] = 1;
+            c.point[k] = t.point[k];
+            base.points[t.point[k]] = t.position[k];
+        }
         base.triangles.push_back(c);
     }
     if (!(longest > 0)) return base;
 
-    std::pmr::vector<Split> splits(memory);
-    std::pmr::vector<std::array<uint32_t, 3>> sides(base.triangles.size(), memory);
-    for (const EdgeUse& use : sortedUses(base.triangles, memory)) {
+    std::pmr::vector<Split> splits(surface.memory);
+    std::pmr::vector<std::array<uint32_t, 3>> sides(base.triangles.size(), surface.memory);
+    for (const EdgeUse& use : sortedUses(base.triangles, surface.memory)) {
         if (splits.empty() || splits.back().low != use.low || splits.back().high != use.high)
             splits.push_back({use.low, use.high, 0, 0});
         sides[use.triangle][use.side] = uint32_t(splits.size() - 1);
@@ -82,7 +83,7 @@ CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
         if (triangles == base.triangles.size()) return base;
     }
 
-    CoarseMesh fine(memory);
+    CoarseMesh fine(surface.memory);
     fine.points = base.points;
     fine.triangles.reserve(triangles);
     for (Split& s : splits) {

@@ -32,15 +32,13 @@ void eachInner(uint32_t n, Visit visit) {
 Surface surfaceOf(const BurnDomain& domain, std::pmr::memory_resource* memory);
 // Halves edges until none is longer than `longest` m (0: no limit), to at most 2^5 pieces an edge
 // and `most` triangles.
-CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
-                      std::pmr::memory_resource* memory);
+CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most);
 
 // Sets rest place, direction, reach, burn-through time and `opposite` of all slots.
 void bakeOffsets(const Surface& surface, const CoarseMesh& coarse, const BurnDomain& domain,
-                 const RefineOptions& options, RefineModel& model,
-                 std::pmr::memory_resource* memory);
+                 const RefineOptions& options, RefineModel& model);
 // Sets the texels that each slot samples, and the tiles of triangles and edges.
 void bakeSamples(const Surface& surface, const CoarseMesh& coarse, const BurnDomain& domain,
-                 RefineModel& model, std::pmr::memory_resource* memory);
+                 RefineModel& model);
 
 }  // namespace fw::mesh

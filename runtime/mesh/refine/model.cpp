@@ -14,16 +14,15 @@ constexpr uint32_t kMaxSlots = 1u << 24;
 
 void check(const RefineOptions& options) {
     if (!(options.wall > 0 && options.wall <= 0.6f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "RefineOptions::wall is %g m; it must lie in (0, 0.6].", double(options.wall));
+        core::refuse("RefineOptions::wall is %g m; it must lie in (0, 0.6].", double(options.wall));
     if (options.depth > gpu::kRefineDepth)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "RefineOptions::depth is %u; it must be at most %u.",
-                   options.depth, gpu::kRefineDepth);
+        core::refuse("RefineOptions::depth is %u; it must be at most %u.", options.depth,
+                     gpu::kRefineDepth);
     if (!(options.cellTexels >= 0) || !(options.splitTexels >= 0))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "RefineOptions::cellTexels and splitTexels are %g and %g; neither may be "
-                   "negative.",
-                   double(options.cellTexels), double(options.splitTexels));
+        core::refuse(
+            "RefineOptions::cellTexels and splitTexels are %g and %g; neither may be "
+            "negative.",
+            double(options.cellTexels), double(options.splitTexels));
 }
 
 uint32_t deepest(double length, double cell, uint32_t depth) {
@@ -36,7 +35,7 @@ uint32_t deepest(double length, double cell, uint32_t depth) {
 // the same triangle.
 struct Seen {
     uint32_t a = kNone, b = kNone;
-    bool operator==(const Seen& o) const { return a == o.a && b == o.b; }
+    bool operator==(const Seen&) const = default;
 };
 Seen seenFrom(const BurnDomain& domain, uint32_t source, glm::dvec3 weight) {
     const uint32_t* corner = &domain.indices[size_t(source) * 3];
@@ -85,9 +84,8 @@ class Copies {
     std::pmr::vector<Copy> copies_;
 };
 
-void makeEdges(const CoarseMesh& coarse, double cell, uint32_t depth, RefineModel& model,
-               std::pmr::memory_resource* memory) {
-    const std::pmr::vector<EdgeUse> uses = sortedUses(coarse.triangles, memory);
+void makeEdges(const CoarseMesh& coarse, double cell, uint32_t depth, RefineModel& model) {
+    const std::pmr::vector<EdgeUse> uses = sortedUses(coarse.triangles, model.memory);
     model.owners.reserve(uses.size());
     for (size_t i = 0; i < uses.size(); ++i) {
         const EdgeUse& use = uses[i];
@@ -127,10 +125,10 @@ void numberSlots(RefineModel& model) {
         t.slot = uint32_t(slots);
         slots += gpu::refineInnerCount(m);
         if (slots > kMaxSlots)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Refinement needs more than %u vertices for %zu coarse triangles; lower "
-                       "RefineOptions::depth or raise cellTexels.",
-                       kMaxSlots, model.triangles.size());
+            core::refuse(
+                "Refinement needs more than %u vertices for %zu coarse triangles; lower "
+                "RefineOptions::depth or raise cellTexels.",
+                kMaxSlots, model.triangles.size());
     }
     FW_ASSERT(slots >= model.cornerCount, "%u corners", model.cornerCount);
     model.slots.resize(slots);
@@ -142,8 +140,9 @@ gpu::RefineDraw drawAt(uint32_t slot, uint32_t triangle, glm::dvec3 weight) {
 }
 
 void makeDraws(const Surface& surface, const CoarseMesh& coarse, const BurnDomain& domain,
-               RefineModel& model, std::pmr::memory_resource* memory) {
-    Copies corners(model.cornerCount, memory), sides(uint32_t(model.edges.size()), memory);
+               RefineModel& model) {
+    Copies corners(model.cornerCount, model.memory),
+        sides(uint32_t(model.edges.size()), model.memory);
     for (uint32_t i = 0; i < model.triangles.size(); ++i) {
         gpu::RefineTriangle& t = model.triangles[i];
         const CoarseTriangle& c = coarse.triangles[i];
@@ -202,36 +201,27 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
     const double texel = double(domain.texelSide);
     const Surface surface = surfaceOf(domain, memory);
     CoarseMesh coarse =
-        coarseMesh(surface, double(options.splitTexels) * texel, options.maxTriangles, memory);
-    const auto materialOf = [&](const CoarseTriangle& t) {
-        const uint32_t source = surface.triangles[t.source].source;
-        return domain.cornerOf(source, 0).material;
-    };
+        coarseMesh(surface, double(options.splitTexels) * texel, options.maxTriangles);
     // Draws go by material.
+    const Groups order =
+        groupBy(domain.materialCount, uint32_t(coarse.triangles.size()), memory, [&](uint32_t i) {
+            const uint32_t source = surface.triangles[coarse.triangles[i].source].source;
+            return domain.cornerOf(source, 0).material;
+        });
     std::pmr::vector<CoarseTriangle> sorted(memory);
-    sorted.reserve(coarse.triangles.size());
-    for (uint32_t m = 0, next = 0; m != kNone; m = next) {
-        next = kNone;
-        for (const CoarseTriangle& t : coarse.triangles) {
-            const uint32_t own = materialOf(t);
-            if (own == m) sorted.push_back(t);
-            if (own > m) next = std::min(next, own);
-        }
-    }
-    FW_ASSERT(sorted.size() == coarse.triangles.size(), "%zu of %zu triangles", sorted.size(),
-              coarse.triangles.size());
-    coarse.triangles = std::move(sorted);
+    for (const uint32_t i : order.items) sorted.push_back(coarse.triangles[i]);
+    coarse.triangles.swap(sorted);
     RefineModel model(memory);
     model.textureWidth = domain.width;
     model.tileCount = domain.tileCount();
     model.cornerCount = uint32_t(coarse.points.size());
     model.triangles.resize(coarse.triangles.size());
-    makeEdges(coarse, double(options.cellTexels) * texel, options.depth, model, memory);
+    makeEdges(coarse, double(options.cellTexels) * texel, options.depth, model);
     numberSlots(model);
     for (gpu::RefineDraw& d : model.draws) d = {0, kNone, 0, 0};
-    makeDraws(surface, coarse, domain, model, memory);
-    bakeOffsets(surface, coarse, domain, options, model, memory);
-    bakeSamples(surface, coarse, domain, model, memory);
+    makeDraws(surface, coarse, domain, model);
+    bakeOffsets(surface, coarse, domain, options, model);
+    bakeSamples(surface, coarse, domain, model);
     return model;
 }
 
@@ -241,10 +231,7 @@ RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& mod
     FW_ASSERT(d.slot < model.slots.size(), "%u of %zu slots", d.slot, model.slots.size());
     const float w[3] = {1 - d.weight1 - d.weight2, d.weight1, d.weight2};
     const gpu::RefineSlot& slot = model.slots[d.slot];
-    RenderVertex v;
-    v.position[0] = slot.x;
-    v.position[1] = slot.y;
-    v.position[2] = slot.z;
+    RenderVertex v{{slot.x, slot.y, slot.z}};
     glm::dvec3 normal(0);
     glm::dvec4 tint(0);
     for (size_t k = 0; k < 3; ++k) {

@@ -60,6 +60,20 @@ bool hasInside(const BurnDomain& domain, const RefineModel& model) noexcept;
 std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
                                       std::pmr::memory_resource* memory);
 
+struct RefineHoles {      // of a material
+    float variation = 0;  // of the noise, as a share of the time to a hole; 0: smooth
+    float tilesX = 0;     // of the noise, per metre
+    float tilesY = 0;     // the same, along the grain
+    bool wood = false;    // every plank (or the whole object) shows another place of the noise
+};
+
+// Ragged holes: scales every slot's burn-through time by the noise that discards fragments of far
+// objects, so that near objects are cut where far ones discard. `slots`: a copy of the model's.
+// `noise`: side * side tiling bytes.
+void refineRoughen(const BurnDomain& domain, const RefineModel& model,
+                   std::span<const RefineHoles> materials, std::span<const uint8_t> noise,
+                   uint32_t side, std::span<gpu::RefineSlot> slots) noexcept;
+
 // A draw vertex in full: the corners' attributes mixed, the place at rest.
 RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& model, uint32_t draw);
 

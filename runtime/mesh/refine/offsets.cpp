@@ -20,132 +20,119 @@ double minAltitude(const CoarseMesh& coarse, const CoarseTriangle& t, double are
     return 2 * area / std::max(longest, 1e-30);
 }
 
-class Offsets {
- public:
-    Offsets(const Surface& surface, const CoarseMesh& coarse, const RefineOptions& options,
-            RefineModel& model, std::pmr::memory_resource* memory)
-        : surface_(surface),
-          coarse_(coarse),
-          options_(options),
-          model_(model),
-          tree_(surface, memory),
-          offset_(coarse.points.size(), glm::dvec3(0), memory),
-          reach_(coarse.points.size(), 0.0, memory) {}
+struct Offsets {
+    const Surface& surface;
+    const CoarseMesh& coarse;
+    const RefineOptions& options;
+    RefineModel& model;
+    RayTree tree{surface};
+    std::pmr::vector<glm::dvec3> offset{coarse.points.size(), glm::dvec3(0), model.memory};
+    std::pmr::vector<double> reach{coarse.points.size(), 0.0, model.memory};  // m, per point
 
-    void run(std::pmr::memory_resource* memory) {
-        corners(memory);
-        for (uint32_t e = 0; e < model_.edges.size(); ++e) edge(e);
-        for (uint32_t i = 0; i < model_.triangles.size(); ++i) interior(i);
+    void run() {
+        corners();
+        for (uint32_t e = 0; e < model.edges.size(); ++e) edge(e);
+        for (uint32_t i = 0; i < model.triangles.size(); ++i) interior(i);
     }
     // The nearest surface along a direction; RayTree::kReach or more: none.
     [[nodiscard]] double depth(glm::dvec3 from, glm::dvec3 direction) const {
-        const float least = float(1e-4 * surface_.extent);
+        const float least = float(1e-4 * surface.extent);
+        int64_t steps = RayTree::kMostSteps;  // of one ray: there is no budget of all
         return double(
-            tree_.cast(glm::vec3(from - surface_.low), glm::vec3(direction), least, kNone));
+            tree.cast(glm::vec3(from - surface.low), glm::vec3(direction), least, kNone, steps));
     }
     [[nodiscard]] const glm::dvec3& normal(uint32_t triangle) const {
-        return surface_.triangles[coarse_.triangles[triangle].source].normal;
+        return surface.triangles[coarse.triangles[triangle].source].normal;
     }
 
- private:
-    void put(uint32_t slot, glm::dvec3 place, glm::dvec3 offset, double reach) {
-        FW_ASSERT(slot < model_.slots.size(), "%u of %zu slots", slot, model_.slots.size());
-        FW_ASSERT(reach >= 0, "%g m", reach);
-        gpu::RefineSlot& s = model_.slots[slot];
+    void put(uint32_t slot, glm::dvec3 place, glm::dvec3 out, double most) {
+        FW_ASSERT(slot < model.slots.size(), "%u of %zu slots", slot, model.slots.size());
+        FW_ASSERT(most >= 0, "%g m", most);
+        gpu::RefineSlot& s = model.slots[slot];
         s.x = float(place.x);
         s.y = float(place.y);
         s.z = float(place.z);
-        s.offset = packNormal(offset / kLongestOffset);
-        s.reach = uint32_t(std::clamp(reach / kReachUnit, 0.0, 65535.0)) | 4096u << 16;
+        s.offset = packNormal(out / kLongestOffset);
+        s.reach = uint32_t(std::clamp(most / kReachUnit, 0.0, 65535.0)) | 4096u << 16;
     }
 
-    void corners(std::pmr::memory_resource* memory) {
-        std::pmr::vector<Faces> faces(coarse_.points.size(), memory);
-        std::pmr::vector<double> altitude(coarse_.points.size(), 1e30, memory);
-        for (uint32_t i = 0; i < coarse_.triangles.size(); ++i) {
-            const CoarseTriangle& t = coarse_.triangles[i];
-            const glm::dvec3 a = coarse_.points[t.point[0]];
-            const double area = 0.5 * glm::length(glm::cross(coarse_.points[t.point[1]] - a,
-                                                             coarse_.points[t.point[2]] - a));
-            const double low = minAltitude(coarse_, t, area);
+    void corners() {
+        std::pmr::vector<Faces> faces(coarse.points.size(), model.memory);
+        std::pmr::vector<double> altitude(coarse.points.size(), 1e30, model.memory);
+        for (uint32_t i = 0; i < coarse.triangles.size(); ++i) {
+            const CoarseTriangle& t = coarse.triangles[i];
+            const glm::dvec3 a = coarse.points[t.point[0]];
+            const double area = 0.5 * glm::length(glm::cross(coarse.points[t.point[1]] - a,
+                                                             coarse.points[t.point[2]] - a));
+            const double low = minAltitude(coarse, t, area);
             for (const uint32_t p : t.point) {
                 faces[p].add(normal(i), 1);
                 altitude[p] = std::min(altitude[p], low);
             }
         }
-        for (uint32_t p = 0; p < coarse_.points.size(); ++p) {
-            if (faces[p].weight > 0) offset_[p] = faces[p].offset();
-            const double length = glm::length(offset_[p]);
-            reach_[p] =
-                std::min(double(options_.wall), double(options_.altitudeShare) * altitude[p]);
+        for (uint32_t p = 0; p < coarse.points.size(); ++p) {
+            if (faces[p].weight > 0) offset[p] = faces[p].offset();
+            const double length = glm::length(offset[p]);
+            reach[p] = std::min(double(options.wall), double(options.altitudeShare) * altitude[p]);
             if (length > 1e-9)  // the distance receded is reach * length
-                reach_[p] =
-                    std::min(reach_[p],
-                             kDepthShare * depth(coarse_.points[p], offset_[p] / length) / length);
-            put(p, coarse_.points[p], offset_[p], reach_[p]);
+                reach[p] = std::min(
+                    reach[p], kDepthShare * depth(coarse.points[p], offset[p] / length) / length);
+            put(p, coarse.points[p], offset[p], reach[p]);
         }
     }
 
     // Whether two owners meet there at less than the angle of a crease.
     [[nodiscard]] bool smooth(uint32_t e) const {
-        const uint32_t start = model_.ownerStart[e];
-        return model_.ownerStart[e + 1] - start == 2 &&
-               glm::dot(normal(model_.owners[start] >> 2), normal(model_.owners[start + 1] >> 2)) >
+        const uint32_t start = model.ownerStart[e];
+        return model.ownerStart[e + 1] - start == 2 &&
+               glm::dot(normal(model.owners[start] >> 2), normal(model.owners[start + 1] >> 2)) >
                    kSmoothCosine;
     }
 
     // A crease moves across itself by its two faces' offset, and along itself as its ends do.
     void edge(uint32_t e) {
-        const gpu::RefineEdge& edge = model_.edges[e];
+        const gpu::RefineEdge& edge = model.edges[e];
         const uint32_t steps = 1u << (edge.flags & 15);
         if (steps == 1) return;
-        const glm::dvec3 a = coarse_.points[edge.low], b = coarse_.points[edge.high];
-        FW_ASSERT(edge.slot + steps - 1 <= model_.slots.size(), "slot %u", edge.slot);
+        const glm::dvec3 a = coarse.points[edge.low], b = coarse.points[edge.high];
+        FW_ASSERT(edge.slot + steps - 1 <= model.slots.size(), "slot %u", edge.slot);
         Faces faces;
-        for (uint32_t o = model_.ownerStart[e]; o < model_.ownerStart[e + 1]; ++o)
-            faces.add(normal(model_.owners[o] >> 2), 1);
+        for (uint32_t o = model.ownerStart[e]; o < model.ownerStart[e + 1]; ++o)
+            faces.add(normal(model.owners[o] >> 2), 1);
         const glm::dvec3 crease = faces.offset(), along = glm::normalize(b - a);
         const bool curved = smooth(e);
         for (uint32_t i = 1; i < steps; ++i) {
             const double f = double(i) / steps;
-            const glm::dvec3 ends = offset_[edge.low] * (1 - f) + offset_[edge.high] * f;
+            const glm::dvec3 ends = offset[edge.low] * (1 - f) + offset[edge.high] * f;
             const glm::dvec3 o =
                 curved ? ends : crease + along * (glm::dot(ends, along) - glm::dot(crease, along));
             put(edge.slot + i - 1, a * (1 - f) + b * f, o,
-                reach_[edge.low] * (1 - f) + reach_[edge.high] * f);
+                reach[edge.low] * (1 - f) + reach[edge.high] * f);
         }
     }
 
     // A flat interior recedes along its normal, and within its plane as the corners do.
     void interior(uint32_t i) {
-        const gpu::RefineTriangle& t = model_.triangles[i];
-        const uint32_t* p = coarse_.triangles[i].point;
+        const gpu::RefineTriangle& t = model.triangles[i];
+        const uint32_t* p = coarse.triangles[i].point;
         const glm::dvec3 up = normal(i);
         const bool curved = smooth(t.edge[0]) && smooth(t.edge[1]) && smooth(t.edge[2]);
         const auto within = [&](const auto& of, glm::dvec3 w) {
             return mixed(of[p[0]], of[p[1]], of[p[2]], w);
         };
         eachInner(1u << gpu::refineInteriorDepth(t.flags), [&](uint32_t number, glm::dvec3 w) {
-            const glm::dvec3 o = within(offset_, w);
-            put(t.slot + number, within(coarse_.points, w),
-                curved ? o : o - up * (glm::dot(o, up) + 1), within(reach_, w));
+            const glm::dvec3 o = within(offset, w);
+            put(t.slot + number, within(coarse.points, w),
+                curved ? o : o - up * (glm::dot(o, up) + 1), within(reach, w));
         });
     }
-
-    const Surface& surface_;
-    const CoarseMesh& coarse_;
-    const RefineOptions& options_;
-    RefineModel& model_;
-    RayTree tree_;
-    std::pmr::vector<glm::dvec3> offset_;  // per point
-    std::pmr::vector<double> reach_;       // m, per point
 };
 
 // Texels around the point where an inward ray leaves the solid, if the wall is thin enough for both
 // sides to burn through together.
 void findOpposites(const Surface& surface, const BurnDomain& domain, const RefineOptions& options,
-                   const Offsets& offsets, RefineModel& model, std::pmr::memory_resource* memory) {
-    std::pmr::vector<uint32_t> surfaceOf(domain.indices.size() / 3, kNone, memory);
+                   const Offsets& offsets, RefineModel& model) {
+    std::pmr::vector<uint32_t> surfaceOf(domain.indices.size() / 3, kNone, model.memory);
     for (uint32_t i = 0; i < surface.triangles.size(); ++i)
         surfaceOf[surface.triangles[i].source] = i;
     for (uint32_t s = 0; s < model.slots.size(); ++s) {
@@ -186,11 +173,10 @@ void findOpposites(const Surface& surface, const BurnDomain& domain, const Refin
 }  // namespace
 
 void bakeOffsets(const Surface& surface, const CoarseMesh& coarse, const BurnDomain& domain,
-                 const RefineOptions& options, RefineModel& model,
-                 std::pmr::memory_resource* memory) {
-    Offsets offsets(surface, coarse, options, model, memory);
-    offsets.run(memory);
-    findOpposites(surface, domain, options, offsets, model, memory);
+                 const RefineOptions& options, RefineModel& model) {
+    Offsets offsets{surface, coarse, options, model};
+    offsets.run();
+    findOpposites(surface, domain, options, offsets, model);
 }
 
 }  // namespace fw::mesh

@@ -1,5 +1,5 @@
 // holeDelay of shaders/surface/appearance.glsl, for slots.
-#include "mesh/refine/roughen.h"
+#include "mesh/refine/model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,8 +11,8 @@ constexpr int kCellSearch = 4;       // texels, if none of the four around is of
 
 class Charts {
  public:
-    Charts(const Surface& surface, const BurnDomain& domain, std::pmr::memory_resource* memory)
-        : domain_(domain), chartOf_(domain.indices.size() / 3, kNone, memory) {
+    Charts(const Surface& surface, const BurnDomain& domain)
+        : domain_(domain), chartOf_(domain.indices.size() / 3, kNone, surface.memory) {
         for (const Triangle& t : surface.triangles) chartOf_[t.source] = t.chart;
     }
     [[nodiscard]] uint32_t of(uint32_t source) const { return chartOf_[source]; }
@@ -99,9 +99,7 @@ void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
 class TileLists {
  public:
     TileLists(const BurnDomain& domain, std::pmr::memory_resource* memory)
-        : domain_(domain), start_(memory), tiles_(memory) {
-        start_.push_back(0);
-    }
+        : domain_(domain), start_(1, 0, memory), tiles_(memory) {}
     void add(int tileX, int tileY) {
         if (tileX < 0 || tileY < 0 || tileX >= int(domain_.tilesX) || tileY >= int(domain_.tilesY))
             return;
@@ -175,14 +173,14 @@ void sideTiles(glm::dvec2 a, glm::dvec2 b, double cells, uint32_t chart, const C
 }  // namespace
 
 void bakeSamples(const Surface& surface, const CoarseMesh& coarse, const BurnDomain& domain,
-                 RefineModel& model, std::pmr::memory_resource* memory) {
-    const Charts charts(surface, domain, memory);
+                 RefineModel& model) {
+    const Charts charts(surface, domain);
     for (uint32_t s = 0; s < model.slots.size(); ++s) sample(domain, charts, s, model);
     const auto cornerUv = [&](uint32_t triangle, uint32_t k) {
         const CoarseTriangle& t = coarse.triangles[triangle];
         return uvAt(surface.triangles[t.source], t.weight[k]);
     };
-    TileLists lists(domain, memory);
+    TileLists lists(domain, model.memory);
     for (uint32_t e = 0; e < model.edges.size(); ++e) {
         for (uint32_t o = model.ownerStart[e]; o < model.ownerStart[e + 1]; ++o) {
             const uint32_t triangle = model.owners[o] >> 2, side = model.owners[o] & 3;

@@ -1,33 +1,29 @@
-#include "volume/march.h"
-
+// The part of a ray in which a flame can burn, for tools and tests that march on the CPU. Frames
+// march on the device.
+#pragma once
+#include "core/assert.h"
 #include "shared/volume_march.h"
 
-#include "core/assert.h"
-
 #include <algorithm>
-#include <cmath>
+#include <span>
 
 namespace fw::volume {
-Bounds flameBounds(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes) noexcept {
-    Bounds b{vec3(nodes.empty() ? 0.0f : 1e30f), vec3(nodes.empty() ? 0.0f : -1e30f)};
-    for (size_t k = 0; k + 1 < nodes.size(); ++k) {
-        if (nodes[k].along.w > topOf(flame)) break;
-        const gpu::FlameNode &a = nodes[k], &next = nodes[k + 1];
-        const vec3 reach(gpu::flameReachAt(flame, a.along.w, next.along.w,
-                                           std::max(a.centre.w, next.centre.w),
-                                           std::max(a.side.w, next.side.w)));
-        for (const vec3 c : {vec3(a.centre), vec3(next.centre)})
-            b.low = glm::min(b.low, c - reach), b.high = glm::max(b.high, c + reach);
-    }
-    return b;
-}
 
-float topOf(const gpu::FlameRecord& flame) noexcept {
-    return flame.high.w * std::max(gpu::kFlameTop, flame.smoke > 0.0f ? flame.smokeTop : 0.0f);
-}
+using gpu::vec2;
+using gpu::vec3;
+using gpu::vec4;
 
-vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
-                vec3 direction, float farthest, uint32_t intervals, RayKnots& out) noexcept {
+// Samples of the curve along a ray.
+struct RayKnots {
+    float from = 0.0f, gap = 0.0f;  // m along the ray
+    vec4 first{0.0f};
+    vec4 delta[gpu::kFlameIntervals]{};
+    uint32_t broken = 0;  // bit per interval in which the nearest place jumps: nothing burns there
+};
+// m along the ray; empty where x >= y.
+inline vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes,
+                       vec3 from, vec3 direction, float farthest, uint32_t intervals,
+                       RayKnots& out) noexcept {
     const vec4 spans = gpu::flameSpans(nodes.data(), flame, from, direction);
     const float end = std::min(spans.y, farthest);
     out = {};
