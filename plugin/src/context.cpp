@@ -19,13 +19,6 @@ void checkCallbacks(const FwCallbacks& callbacks) {
                      callbacks.allocate ? "allocate" : "release");
 }
 
-FwContext* makeContext(const FwContextDef& def) {
-    core::Memory first(def.callbacks);  // the context's own block precedes its counters
-    FwContext* context =
-        std::pmr::polymorphic_allocator<>(&first).new_object<FwContext>(def.callbacks);
-    return context;
-}
-
 void freeContext(FwContext* context) noexcept {
     const FwCallbacks callbacks = context->callbacks;
     core::Memory last(callbacks);
@@ -91,7 +84,8 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
         if (def.backend == FW_BACKEND_CPU && def.vulkan)
             core::refuse(
                 "FwContextDef::vulkan is given and backend is FW_BACKEND_CPU; choose one.");
-        FwContext* context = makeContext(def);
+        core::Memory first(callbacks);  // the context's own block precedes its counters
+        auto* context = std::pmr::polymorphic_allocator<>(&first).new_object<FwContext>(callbacks);
         try {
             context->backend = def.backend;
             context->device = def.backend == FW_BACKEND_CPU

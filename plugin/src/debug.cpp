@@ -30,8 +30,7 @@ uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld* world, FwPassTime* times, uint32_
 FwResult FW_CALL fwDebug_RequestBurnMap(FwWorld* world, FwBurnableMeshId id) {
     return onWorld(__func__, world, [&](world::World& w) {
         w.queries().requestBurnMap(id);
-        edge::Device& device = *world->context->device;
-        if (device.answersAtOnce()) device.step(*world->backend, w, 0.0f);
+        edge::answerAtOnce(world);
     });
 }
 

@@ -1,4 +1,5 @@
 // Deferred destruction: any thread may request it while another one steps or records.
+#include "core/assert.h"
 #include "flamewright/flamewright_vulkan.h"
 #include "objects.h"
 
@@ -11,41 +12,21 @@ using edge::onWorld;
 
 namespace {
 
-template <auto kDestroy>
-void destroyBy(world::World& w, const FwObjectRef& object) {
-    const auto destroy = []<class System, class Id>(world::World& from, void (System::*)(Id),
-                                                    const FwObjectRef& gone) {
-        (edge::systemOf<System>(from).*kDestroy)(Id{gone.index1, gone.generation});
-    };
-    destroy(w, kDestroy, object);
+void destroyObject(world::World& w, const FwObjectRef& object) {
+    switch (FwObjectKind(object.kind)) {  // the compiler misses a kind without a row
+#define FW_KIND(KIND, Name, System, destroyFunction, destroy)                                     \
+    case FW_OBJECT_##KIND:                                                                        \
+        edge::systemOf<world::System>(w).destroy(Fw##Name##Id{object.index1, object.generation}); \
+        break;
+#include "kinds.inl"
+        case FW_OBJECT_KIND_COUNT:
+        case FW_OBJECT_KIND_FORCE32:
+            FW_ASSERT(false, "kind %u", object.kind);
+    }
 }
 
-struct Kind {
-    uint32_t kind;
-    void (*destroy)(world::World& w, const FwObjectRef& object);
-};
-constexpr Kind kKinds[] = {
-    {FW_OBJECT_MATERIAL, &destroyBy<&world::Scene::destroyMaterial>},
-    {FW_OBJECT_IMAGE, &destroyBy<&world::Scene::destroyImage>},
-    {FW_OBJECT_MESH, &destroyBy<&world::Scene::destroyMesh>},
-    {FW_OBJECT_BURNABLE_MESH, &destroyBy<&world::World::destroyBurnableMesh>},
-    {FW_OBJECT_HEAT_OCCLUDER, &destroyBy<&world::ExchangeSystem::removeHeatOccluder>},
-    {FW_OBJECT_VOLUMETRIC_FIRE, &destroyBy<&world::FlameSystem::destroy>},
-    {FW_OBJECT_FIRE_PROFILE, &destroyBy<&world::FlameSystem::destroyProfile>},
-    {FW_OBJECT_FIRE_COLLIDER, &destroyBy<&world::FlameSystem::removeCollider>},
-    {FW_OBJECT_FIRE_EMITTER, &destroyBy<&world::EmitterSystem::destroy>},
-    {FW_OBJECT_FLIPBOOK, &destroyBy<&world::FlameSystem::destroyFlipbook>},
-    {FW_OBJECT_PARTICLE_FIELD, &destroyBy<&world::FieldSystem::destroy>},
-    {FW_OBJECT_WIND_ZONE, &destroyBy<&world::WindSystem::destroyZone>},
-    {FW_OBJECT_ROOM, &destroyBy<&world::RoomSystem::destroy>},
-    {FW_OBJECT_BURN, &destroyBy<&world::BurnSystem::destroyBurn>},
-};
-static_assert(std::size(kKinds) == FW_OBJECT_KIND_COUNT - 1);
-
 void checkRef(const FwObjectRef& object) {
-    if (object.kind < 1 || object.kind >= FW_OBJECT_KIND_COUNT)
-        core::refuse("FwObjectRef::kind is %u; the limits are [1, %u].", object.kind,
-                     uint32_t(FW_OBJECT_KIND_COUNT) - 1);
+    components::checkWhole(object.kind, "FwObjectRef::kind", 1, FW_OBJECT_KIND_COUNT - 1);
     if (object.reserved != 0)
         core::refuse("FwObjectRef::reserved is %u; it is zero.", object.reserved);
     if (object.index1 == 0)
@@ -58,9 +39,7 @@ bool destroyNow(world::World& w, const FwObjectRef& object) {
         if (object.kind == FW_OBJECT_IMAGE &&
             w.scene().showsImage({object.index1, object.generation}))
             return false;
-        std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& one) {
-            return one.kind == object.kind;
-        })->destroy(w, object);
+        destroyObject(w, object);
     } catch (const core::Error& error) {
         if (error.result == FW_ERROR_INVALID_ARGUMENT) return false;
         throw;
@@ -68,13 +47,14 @@ bool destroyNow(world::World& w, const FwObjectRef& object) {
     return true;
 }
 
-template <class What>
-void defer(std::pmr::vector<edge::Deferred<What>>& list, const edge::Deferred<What>& one) {
-    const auto known = std::find_if(list.begin(), list.end(), [&](const edge::Deferred<What>& had) {
-        return std::memcmp(&had.what, &one.what, sizeof one.what) == 0;
+void defer(FwContext& context, const edge::Deferred& one) {
+    const std::lock_guard lock(context.mutex);
+    const auto known = std::ranges::find_if(context.deferred, [&](const edge::Deferred& had) {
+        return had.world == one.world && had.target.index1 == one.target.index1 &&
+               had.target.generation == one.target.generation;
     });
-    if (known == list.end())
-        list.push_back(one);
+    if (known == context.deferred.end())
+        context.deferred.push_back(one);
     else
         known->frameIndex = one.frameIndex;
 }
@@ -85,19 +65,6 @@ void unregister(edge::Device& device, FwTargetId target) {
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_STALE_ID) throw;  // the host has unregistered it meanwhile
     }
-}
-
-// Removes an entry of a completed frame from the list.
-template <class What>
-bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed,
-             What& what) noexcept {
-    const auto due = std::find_if(list.begin(), list.end(), [&](const edge::Deferred<What>& one) {
-        return one.frameIndex <= completed;
-    });
-    if (due == list.end()) return false;
-    what = due->what;
-    list.erase(due);
-    return true;
 }
 
 }  // namespace
@@ -142,9 +109,7 @@ FwResult FW_CALL fwWorld_DestroyLater(FwWorld* world, const FwObjectRef* object)
 FwResult FW_CALL fwWorld_DestroyAfterFrame(FwWorld* world, uint64_t frameIndex) {
     return onWorld(__func__, world, [&](world::World&) {
         const uint64_t frame = frameIndex ? frameIndex : world->newestFrame.load();
-        FwContext& context = *world->context;
-        const std::lock_guard lock(context.mutex);
-        defer(context.deferredWorlds, {world, frame});
+        defer(*world->context, {world, {}, frame});
     });
 }
 
@@ -153,8 +118,7 @@ FwResult FW_CALL fwContext_UnregisterTargetAfterFrame(FwContext* context, FwTarg
     return onContext(__func__, context, [&](FwContext& c) {
         if (id.index1 == 0) core::fail(FW_ERROR_STALE_ID, "Target id is null.");
         c.device->checkTarget(id);
-        const std::lock_guard lock(c.mutex);
-        defer(c.deferredTargets, {id, frameIndex});
+        defer(c, {nullptr, id, frameIndex});
     });
 }
 
@@ -162,20 +126,23 @@ uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completedFrameIn
     uint32_t waiting = 0;
     (void)onContext(__func__, context, [&](FwContext& c) {
         for (;;) {
-            FwWorld* world = nullptr;
-            FwTargetId target{};
+            edge::Deferred one;
             {
                 const std::lock_guard lock(c.mutex);
-                if (!takeDue(c.deferredWorlds, completedFrameIndex, world) &&
-                    !takeDue(c.deferredTargets, completedFrameIndex, target)) {
-                    waiting = uint32_t(c.deferredWorlds.size() + c.deferredTargets.size());
+                const auto due = std::ranges::find_if(c.deferred, [&](const edge::Deferred& had) {
+                    return had.frameIndex <= completedFrameIndex;
+                });
+                if (due == c.deferred.end()) {
+                    waiting = uint32_t(c.deferred.size());
                     return FW_OK;
                 }
+                one = *due;
+                c.deferred.erase(due);
             }
-            if (world)
-                fwDestroyWorld(world);
+            if (one.world)
+                fwDestroyWorld(one.world);
             else
-                unregister(*c.device, target);
+                unregister(*c.device, one.target);
         }
     });
     return waiting;

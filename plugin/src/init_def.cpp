@@ -20,6 +20,9 @@ void set(float (&out)[3], float x, float y, float z) noexcept {
     out[2] = z;
 }
 
+template <class Def>
+void defaults(Def&) noexcept {}  // zeros
+
 void defaults(FwContextDef& def) noexcept {
     def.abiVersion = FW_ABI_VERSION;
     def.backend = FW_BACKEND_VULKAN;
@@ -43,8 +46,6 @@ void defaults(FwWorldDef& def) noexcept {
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }
-
-void defaults(FwImageDef&) noexcept {}
 
 void defaults(FwMeshDef& def) noexcept {
     def.indexSize = 4;
@@ -130,10 +131,6 @@ void defaults(FwParticleFieldDef& def) noexcept {
     set(def.tint, 1, 1, 1);
     def.opacity = 1;
 }
-
-void defaults(FwFireProfileDef&) noexcept {}
-
-void defaults(FwFlipbookDef&) noexcept {}
 
 void defaults(FwFireTrackDef& def) noexcept { def.weight = 1; }
 

@@ -22,9 +22,9 @@ struct Snapshot {
     std::pmr::vector<world::StateCopy> objects;  // by slot
 };
 
-template <class What>
-struct Deferred {  // to be destroyed once the frame is complete
-    What what{};
+struct Deferred {              // to be destroyed once the frame is complete
+    FwWorld* world = nullptr;  // null: the target
+    FwTargetId target{};
     uint64_t frameIndex = 0;
 };
 
@@ -42,8 +42,7 @@ struct FwContext {
 
     std::mutex mutex;  // of what is below
     std::pmr::vector<FwWorld*> worlds{&memory};
-    std::pmr::vector<fw::edge::Deferred<FwWorld*>> deferredWorlds{&memory};  // of `worlds`
-    std::pmr::vector<fw::edge::Deferred<FwTargetId>> deferredTargets{&memory};
+    std::pmr::vector<fw::edge::Deferred> deferred{&memory};
     // The last cooked mesh, between the call that asks for its size and the one that takes it.
     std::pmr::vector<std::byte> cooked{&memory};
     uint64_t cookedKey = 0;
@@ -126,36 +125,6 @@ class InMetres {
  private:
     MetreArrays arrays_;
     Def def_;
-};
-
-// The same of a heat-occlusion grid, whose function asks the host in the host's unit.
-class OcclusionInMetres {
- public:
-    OcclusionInMetres(FwWorld& world, const FwHeatOcclusionDef* given)
-        : unitsPerMetre_(float(world.unit.perMetre())),
-          def_(readDef(given, world.unit)),
-          ask_(def_.distance),
-          data_(def_.distanceData) {
-        if (!def_.distance || world.unit.isMetre()) return;
-        def_.distance = &distance;
-        def_.distanceData = this;
-    }
-    OcclusionInMetres(const OcclusionInMetres&) = delete;
-    OcclusionInMetres& operator=(const OcclusionInMetres&) = delete;
-    operator const FwHeatOcclusionDef&() const noexcept { return def_; }
-
- private:
-    static float FW_CALL distance(void* data, const float place[3]) {
-        const auto& self = *static_cast<const OcclusionInMetres*>(data);
-        const float per = self.unitsPerMetre_;
-        const float asked[3] = {place[0] * per, place[1] * per, place[2] * per};
-        return self.ask_(self.data_, asked) / per;
-    }
-
-    float unitsPerMetre_;
-    FwHeatOcclusionDef def_;
-    float(FW_CALL* ask_)(void*, const float*);
-    void* data_;
 };
 
 // Units of object spaces, for those that differ from the world's. A stale id has any unit: the

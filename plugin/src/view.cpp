@@ -1,22 +1,13 @@
 // Checks of FwView.
+#include "components/pose.h"
 #include "edge.h"
 
 #include <cmath>
+#include <cstdio>
+#include <span>
 
 namespace fw::edge {
 namespace {
-
-void checkRange(const float* values, unsigned count, const char* name, const char* field, float low,
-                float high) {
-    for (unsigned i = 0; i < count; ++i) {
-        if (values[i] >= low && values[i] <= high) continue;
-        if (count == 1)
-            core::refuse("%s.%s is %g; the limits are [%g, %g].", name, field, double(values[i]),
-                         double(low), double(high));
-        core::refuse("%s.%s[%u] is %g; the limits are [%g, %g].", name, field, i, double(values[i]),
-                     double(low), double(high));
-    }
-}
 
 // A row-major view or an empty projection would show nothing.
 void checkMatrices(const FwView& view, const char* name) {
@@ -56,23 +47,32 @@ void checkMatrices(const FwView& view, const char* name) {
 
 void validatedView(const Unit& unit, FwView& view, const char* name) {
     if (view.flags != 0) core::refuse("%s.flags is 0x%x; it is zero.", name, view.flags);
-    checkRange(view.view, 16, name, "view", -1e9f, 1e9f);
-    checkRange(view.projection, 16, name, "projection", -1e9f, 1e9f);
+    const auto check = [&](std::span<const float> values, const char* field, float low,
+                           float high) {
+        char full[96];
+        std::snprintf(full, sizeof full, "%s.%s", name, field);
+        if (values.size() == 1)
+            components::checkValue(values[0], full, low, high);
+        else
+            components::checkValues(values.data(), unsigned(values.size()), full, low, high);
+    };
+    check(view.view, "view", -1e9f, 1e9f);
+    check(view.projection, "projection", -1e9f, 1e9f);
     checkMatrices(view, name);
-    checkRange(view.sunDirection, 3, name, "sunDirection", -1.001f, 1.001f);
+    check(view.sunDirection, "sunDirection", -1.001f, 1.001f);
     const float* sun = view.sunDirection;
     const float length = std::sqrt(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);
     if (std::fabs(length - 1.0f) > 1e-2f)
         core::refuse("%s.sunDirection has length %g; it is a unit vector within 0.01.", name,
                      double(length));
-    checkRange(view.sunColor, 3, name, "sunColor", 0.0f, 1e6f);
-    checkRange(view.ambientSky, 3, name, "ambientSky", 0.0f, 1e6f);
-    checkRange(view.ambientGround, 3, name, "ambientGround", 0.0f, 1e6f);
-    checkRange(&view.exposure, 1, name, "exposure", 1e-6f, 1e6f);
-    checkRange(&view.emissionScale, 1, name, "emissionScale", 0.0f, 1e6f);
-    checkRange(&view.time, 1, name, "time", -1e9f, 1e9f);
-    checkRange(&view.haze, 1, name, "haze", 0.0f, 8.0f);
-    checkRange(&view.reserved, 1, name, "reserved", 0.0f, 0.0f);
+    check(view.sunColor, "sunColor", 0.0f, 1e6f);
+    check(view.ambientSky, "ambientSky", 0.0f, 1e6f);
+    check(view.ambientGround, "ambientGround", 0.0f, 1e6f);
+    check({&view.exposure, 1}, "exposure", 1e-6f, 1e6f);
+    check({&view.emissionScale, 1}, "emissionScale", 0.0f, 1e6f);
+    check({&view.time, 1}, "time", -1e9f, 1e9f);
+    check({&view.haze, 1}, "haze", 0.0f, 8.0f);
+    check({&view.reserved, 1}, "reserved", 0.0f, 0.0f);
     toMetres(unit, view);
 }
 

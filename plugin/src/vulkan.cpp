@@ -3,7 +3,6 @@
 
 #include "components/appearance_table.h"
 #include "components/appearance_textures.h"
-#include "components/view_params.h"
 #include "components/volumetric_fire.h"
 #include "gpu/vk/vk_backend.h"
 #include "objects.h"
@@ -52,21 +51,14 @@ void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 constexpr DefRow kVulkanDefs[] = {FW_EACH_VULKAN_DEF(FW_ROW)};
 #undef FW_ROW
 
-// View parameters for the backend, which does not include the components.
-void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
-    components::ViewInputs inputs;
-    std::copy_n(input.viewport, 4, inputs.viewport);
-    inputs.now = input.now;
-    inputs.tickFraction = input.tickFraction;
-    inputs.lightCount = input.lightCount;
-    inputs.flameCapacity = input.flameCapacity;
-    inputs.seed = input.seed;
-    inputs.lastLight = input.lastLight;
-    inputs.quadShare = input.quadShare;
-    std::copy_n(input.up, 3, inputs.up);
-    std::copy_n(input.wind, 3, inputs.wind);
-    inputs.paceFactor = input.paceFactor;
-    out = components::makeViewParams(*input.view, inputs);
+// Of a frame that has begun.
+void advance(world::World& world, gpu::vk::VkBackend& backend, uint64_t frame, float deltaTime) {
+    try {
+        world.advance(frame, deltaTime);
+    } catch (...) {
+        backend.cancelOutside();
+        throw;
+    }
 }
 
 class VulkanDevice final : public Device {
@@ -76,12 +68,8 @@ class VulkanDevice final : public Device {
         : memory_(memory),
           log_(log),
           context_(host, budget, &memory, log),
-          lookTable_(&memory),
           lookTextures_(&memory),
-          fireProfiles_(components::bakeFireProfiles(&memory)) {
-        for (uint32_t i = 0; i < components::kLookCount; ++i)
-            lookTable_.push_back(components::materialLook(i));
-    }
+          fireProfiles_(components::bakeFireProfiles(&memory)) {}
 
     gpu::Backend* createBackend(const FwWorldDef& def) override {
         gpu::vk::WorldLimits limits;
@@ -93,10 +81,9 @@ class VulkanDevice final : public Device {
         limits.seed = def.seed;
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;
-        limits.looks.table = lookTable_;
+        limits.looks.table = components::materialLooks();
         limits.looks.textures = lookTextures();
         limits.looks.profiles = fireProfiles_;
-        limits.looks.viewParams = &fillViewParams;
         return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(
             context_, limits, &memory_, log_);
     }
@@ -122,12 +109,7 @@ class VulkanDevice final : public Device {
         components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
         auto& backend = static_cast<gpu::vk::VkBackend&>(given);
         backend.beginOwn();
-        try {
-            world.advance(world.lastFrame() + 1, deltaTime);
-        } catch (...) {
-            backend.cancelOutside();
-            throw;
-        }
+        advance(world, backend, world.lastFrame() + 1, deltaTime);
         backend.endOwn();
         world.collect();  // the submit has finished, so its readback is available
     }
@@ -161,7 +143,6 @@ class VulkanDevice final : public Device {
     const core::Log& log_;
     gpu::vk::Context context_;
     // Kept for later worlds: a backend copies them at its creation.
-    std::pmr::vector<gpu::MaterialAppearance> lookTable_;
     std::mutex looksMutex_;
     std::pmr::vector<std::byte> lookTextures_, fireProfiles_;
 };
@@ -258,8 +239,7 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
                                std::array<FwView, FW_MAX_VIEWS>& out) {
     static_assert(FW_MAX_VIEWS == gpu::kMaxViews);
     checkPointer(given, "views");
-    if (count == 0 || count > FW_MAX_VIEWS)
-        core::refuse("viewCount is %u; the limits are [1, %u].", count, FW_MAX_VIEWS);
+    components::checkWhole(count, "viewCount", 1, FW_MAX_VIEWS);
     const uint32_t stride = given->structSize;
     for (uint32_t i = 0; i < count; ++i) {
         char name[16];
@@ -291,12 +271,7 @@ FwResult recordOutside(FwWorld& world, gpu::vk::VkBackend& backend, const FwVulk
     recordFrameUse(world, frame);
     destroyDoomed(world);
     if (!backend.beginOutside(frame, views)) return FW_NOT_READY;
-    try {
-        w.advance(frame.frameIndex, frame.deltaTime);
-    } catch (...) {
-        backend.cancelOutside();
-        throw;
-    }
+    advance(w, backend, frame.frameIndex, frame.deltaTime);
     backend.endOutside();
     publish(world);
     return FW_OK;
@@ -444,15 +419,12 @@ void checkVertices(const FwVulkanVertices& def) {
 // False: the viewport is empty.
 bool checkViewport(const VkViewport* given) {
     checkPointer(given, "viewport");
-    const float values[6] = {given->x,      given->y,        given->width,
-                             given->height, given->minDepth, given->maxDepth};
-    static constexpr const char* kNames[6] = {"x", "y", "width", "height", "minDepth", "maxDepth"};
-    static constexpr float kLow[6] = {-32768, -32768, 0, 0, 0, 0};
-    static constexpr float kHigh[6] = {32767, 32767, 32768, 32768, 1, 1};
-    for (int i = 0; i < 6; ++i)
-        if (!(values[i] >= kLow[i] && values[i] <= kHigh[i]))
-            core::refuse("viewport->%s is %g; the limits are [%g, %g].", kNames[i],
-                         double(values[i]), double(kLow[i]), double(kHigh[i]));
+    components::checkValue(given->x, "viewport->x", -32768, 32767);
+    components::checkValue(given->y, "viewport->y", -32768, 32767);
+    components::checkValue(given->width, "viewport->width", 0, 32768);
+    components::checkValue(given->height, "viewport->height", 0, 32768);
+    components::checkValue(given->minDepth, "viewport->minDepth", 0, 1);
+    components::checkValue(given->maxDepth, "viewport->maxDepth", 0, 1);
     return given->width > 0 && given->height > 0;
 }
 
@@ -501,8 +473,8 @@ FwResult FW_CALL fwContext_UnregisterTarget(FwContext* context, FwTargetId id) {
     return onContext(__func__, context, [&](FwContext& c) {
         edge::vulkanOf(c).context().unregisterTarget(id);
         const std::lock_guard lock(c.mutex);
-        std::erase_if(c.deferredTargets, [&](const auto& one) {
-            return one.what.index1 == id.index1 && one.what.generation == id.generation;
+        std::erase_if(c.deferred, [&](const edge::Deferred& one) {
+            return one.target.index1 == id.index1 && one.target.generation == id.generation;
         });
         return FW_OK;
     });

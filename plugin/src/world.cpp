@@ -89,7 +89,7 @@ void FW_CALL fwDestroyWorld(FwWorld* world) {
     {
         const std::lock_guard lock(context->mutex);
         std::erase(context->worlds, world);
-        std::erase_if(context->deferredWorlds, [&](const auto& one) { return one.what == world; });
+        std::erase_if(context->deferred, [&](const auto& one) { return one.world == world; });
     }
     freeWorld(world);
 }
@@ -106,11 +106,6 @@ FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags) {
     return call(__func__, world, &world::ExchangeSystem::setFlags, flags);
 }
 
-FwResult FW_CALL fwWorld_AddHeatOccluder(FwWorld* world, const FwHeatOccluderDef* given,
-                                         FwHeatOccluderId* id) {
-    return create(__func__, world, id, &world::ExchangeSystem::addHeatOccluder, given);
-}
-
 FwResult FW_CALL fwWorld_MoveHeatOccluder(FwWorld* world, FwHeatOccluderId id,
                                           const float transform[16]) {
     return onWorld(__func__, world, [&](world::World& w) {
@@ -120,31 +115,18 @@ FwResult FW_CALL fwWorld_MoveHeatOccluder(FwWorld* world, FwHeatOccluderId id,
     });
 }
 
-FwResult FW_CALL fwWorld_RemoveHeatOccluder(FwWorld* world, FwHeatOccluderId id) {
-    return call(__func__, world, &world::ExchangeSystem::removeHeatOccluder, id);
-}
-
 FwResult FW_CALL fwWorld_SetHeatOcclusion(FwWorld* world, const FwHeatOcclusionDef* given) {
     return onWorld(__func__, world, [&](world::World& w) {
         if (given)
-            w.exchange().setHeatOcclusion(edge::OcclusionInMetres(*world, given));
+            w.exchange().setHeatOcclusion(InMetres(*world, given), float(world->unit.perMetre()));
         else
             w.exchange().setHeatOcclusion({});
     });
 }
 
-FwResult FW_CALL fwWorld_CreateWindZone(FwWorld* world, const FwWindZoneDef* given,
-                                        FwWindZoneId* id) {
-    return create(__func__, world, id, &world::WindSystem::createZone, given);
-}
-
 FwResult FW_CALL fwWorld_SetWindZone(FwWorld* world, FwWindZoneId id, const FwWindZoneDef* given) {
     return onWorld(__func__, world,
                    [&](world::World& w) { w.wind().setZone(id, InMetres(*world, given)); });
-}
-
-FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld* world, FwWindZoneId id) {
-    return call(__func__, world, &world::WindSystem::destroyZone, id);
 }
 
 FwResult FW_CALL fwWorld_SetWindGrid(FwWorld* world, const FwWindGridDef* given) {
@@ -169,41 +151,43 @@ FwResult FW_CALL fwWorld_GetWindAt(FwWorld* world, const float point[3], float w
     });
 }
 
-FwResult FW_CALL fwWorld_CreateRoom(FwWorld* world, const FwRoomDef* given, FwRoomId* id) {
-    return create(__func__, world, id, &world::RoomSystem::create, given);
-}
-
 FwResult FW_CALL fwWorld_SetRoom(FwWorld* world, FwRoomId id, const FwRoomDef* given) {
     return onWorld(__func__, world,
                    [&](world::World& w) { w.rooms().set(id, InMetres(*world, given)); });
-}
-
-FwResult FW_CALL fwWorld_DestroyRoom(FwWorld* world, FwRoomId id) {
-    return call(__func__, world, &world::RoomSystem::destroy, id);
 }
 
 FwResult FW_CALL fwWorld_GetRoomState(FwWorld* world, FwRoomId id, FwRoomState* state) {
     return fill(__func__, world, state, &world::RoomSystem::fillState, id);
 }
 
-// ---- materials, images, meshes ----------------------------------------------------------------
+// ---- calls that kinds of objects have in common ---------------------------------------------
 
-FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,
-                                        FwMaterialId* id) {
-    return create(__func__, world, id, &world::Scene::createMaterial, given);
-}
+#define FW_KIND(KIND, Name, System, destroyFunction, destroy)                     \
+    FwResult FW_CALL fwWorld_##destroyFunction(FwWorld* world, Fw##Name##Id id) { \
+        return call(__func__, world, &world::System::destroy, id);                \
+    }
+#define FW_KIND_OF_DEF(KIND, Name, System, createFunction, make, destroyFunction, destroy) \
+    FwResult FW_CALL fwWorld_##createFunction(FwWorld* world, const Fw##Name##Def* given,  \
+                                              Fw##Name##Id* id) {                          \
+        return create(__func__, world, id, &world::System::make, given);                   \
+    }                                                                                      \
+    FW_KIND(KIND, Name, System, destroyFunction, destroy)
+#include "kinds.inl"
 
-FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld* world, FwMaterialId id) {
-    return call(__func__, world, &world::Scene::destroyMaterial, id);
-}
+#define FW_SHOWN(Name, System)                                                                     \
+    FwResult FW_CALL fwWorld_Set##Name##Hidden(FwWorld* world, Fw##Name##Id id, uint32_t hidden) { \
+        return call(__func__, world, &world::System::setHidden, id, hidden != 0);                  \
+    }                                                                                              \
+    FwResult FW_CALL fwWorld_Get##Name##State(FwWorld* world, Fw##Name##Id id,                     \
+                                              Fw##Name##State* state) {                            \
+        return fill(__func__, world, state, &world::System::fillState, id);                        \
+    }
+FW_SHOWN(VolumetricFire, FlameSystem)
+FW_SHOWN(FireEmitter, EmitterSystem)
+FW_SHOWN(ParticleField, FieldSystem)
+#undef FW_SHOWN
 
-FwResult FW_CALL fwWorld_CreateImage(FwWorld* world, const FwImageDef* given, FwImageId* id) {
-    return create(__func__, world, id, &world::Scene::createImage, given);
-}
-
-FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
-    return call(__func__, world, &world::Scene::destroyImage, id);
-}
+// ---- meshes ----------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMeshId* id) {
     if (!world) return FW_ERROR_INVALID_ARGUMENT;
@@ -223,10 +207,6 @@ FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMe
         *id = made;
     };
     return onWorld(__func__, world, make, &unit);
-}
-
-FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
-    return call(__func__, world, &world::Scene::destroyMesh, id);
 }
 
 FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* info) {
@@ -260,10 +240,6 @@ FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld* world, const FwBurnableMesh
     });
 }
 
-FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld* world, FwBurnableMeshId id) {
-    return call(__func__, world, &world::World::destroyBurnableMesh, id);
-}
-
 FwResult FW_CALL fwWorld_SetTransform(FwWorld* world, FwBurnableMeshId id,
                                       const float transform[16]) {
     return onWorld(__func__, world, [&](world::World& w) {
@@ -291,15 +267,6 @@ FwResult FW_CALL fwWorld_SetHidden(FwWorld* world, FwBurnableMeshId id, uint32_t
 
 // ---- volumetric fires -------------------------------------------------------------------------
 
-FwResult FW_CALL fwWorld_CreateVolumetricFire(FwWorld* world, const FwVolumetricFireDef* given,
-                                              FwVolumetricFireId* id) {
-    return create(__func__, world, id, &world::FlameSystem::create, given);
-}
-
-FwResult FW_CALL fwWorld_DestroyVolumetricFire(FwWorld* world, FwVolumetricFireId id) {
-    return call(__func__, world, &world::FlameSystem::destroy, id);
-}
-
 FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld* world, FwVolumetricFireId id,
                                             const float position[3]) {
     return call(__func__, world, &world::FlameSystem::move, id, Place{position, "position"});
@@ -318,19 +285,9 @@ FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld* world, FwVolumetricFir
     });
 }
 
-FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld* world, FwVolumetricFireId id,
-                                                 uint32_t hidden) {
-    return call(__func__, world, &world::FlameSystem::setHidden, id, hidden != 0);
-}
-
 FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld* world, FwVolumetricFireId id,
                                                uint32_t tier) {
     return call(__func__, world, &world::FlameSystem::setTier, id, tier);
-}
-
-FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld* world, FwVolumetricFireId id,
-                                                FwVolumetricFireState* state) {
-    return fill(__func__, world, state, &world::FlameSystem::fillState, id);
 }
 
 FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFireId id,
@@ -345,15 +302,6 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFire
     });
 }
 
-FwResult FW_CALL fwWorld_CreateFireEmitter(FwWorld* world, const FwFireEmitterDef* given,
-                                           FwFireEmitterId* id) {
-    return create(__func__, world, id, &world::EmitterSystem::create, given);
-}
-
-FwResult FW_CALL fwWorld_DestroyFireEmitter(FwWorld* world, FwFireEmitterId id) {
-    return call(__func__, world, &world::EmitterSystem::destroy, id);
-}
-
 FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld* world, FwFireEmitterId id,
                                          const float position[3], const float* direction) {
     return call(__func__, world, &world::EmitterSystem::move, id, Place{position, "position"},
@@ -362,33 +310,6 @@ FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld* world, FwFireEmitterId id,
 
 FwResult FW_CALL fwWorld_SetFireEmitterPower(FwWorld* world, FwFireEmitterId id, float power) {
     return call(__func__, world, &world::EmitterSystem::setPower, id, power);
-}
-
-FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld* world, FwFireEmitterId id, uint32_t hidden) {
-    return call(__func__, world, &world::EmitterSystem::setHidden, id, hidden != 0);
-}
-
-FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld* world, FwFireEmitterId id,
-                                             FwFireEmitterState* state) {
-    return fill(__func__, world, state, &world::EmitterSystem::fillState, id);
-}
-
-FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld* world, const FwFireProfileDef* given,
-                                           FwFireProfileId* id) {
-    return create(__func__, world, id, &world::FlameSystem::createProfile, given);
-}
-
-FwResult FW_CALL fwWorld_DestroyFireProfile(FwWorld* world, FwFireProfileId id) {
-    return call(__func__, world, &world::FlameSystem::destroyProfile, id);
-}
-
-FwResult FW_CALL fwWorld_CreateFlipbook(FwWorld* world, const FwFlipbookDef* given,
-                                        FwFlipbookId* id) {
-    return create(__func__, world, id, &world::FlameSystem::createFlipbook, given);
-}
-
-FwResult FW_CALL fwWorld_DestroyFlipbook(FwWorld* world, FwFlipbookId id) {
-    return call(__func__, world, &world::FlameSystem::destroyFlipbook, id);
 }
 
 FwResult FW_CALL fwWorld_SetFlameFlipbooks(FwWorld* world, FwFlipbookId fire, FwFlipbookId smoke) {
@@ -407,10 +328,6 @@ FwResult FW_CALL fwWorld_SetFireCollider(FwWorld* world, FwFireColliderId id,
                 edge::UnitsPerMetre{});
 }
 
-FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld* world, FwFireColliderId id) {
-    return call(__func__, world, &world::FlameSystem::removeCollider, id);
-}
-
 FwResult FW_CALL fwWorld_SampleVolumetricFires(FwWorld* world, const float point[3],
                                                FwFireSample* sample) {
     return fill(__func__, world, sample, &world::FlameSystem::ask, Place{point, "point"});
@@ -420,15 +337,6 @@ FwResult FW_CALL fwWorld_GetVolumetricFireForce(FwWorld* world, const float cent
                                                 FwFireForce* force) {
     return fill(__func__, world, force, &world::FlameSystem::push, Place{centre, "centre"},
                 edge::Length{radius});
-}
-
-FwResult FW_CALL fwWorld_CreateParticleField(FwWorld* world, const FwParticleFieldDef* given,
-                                             FwParticleFieldId* id) {
-    return create(__func__, world, id, &world::FieldSystem::create, given);
-}
-
-FwResult FW_CALL fwWorld_DestroyParticleField(FwWorld* world, FwParticleFieldId id) {
-    return call(__func__, world, &world::FieldSystem::destroy, id);
 }
 
 FwResult FW_CALL fwWorld_MoveParticleField(FwWorld* world, FwParticleFieldId id,
@@ -442,19 +350,9 @@ FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld* world, FwParticleFieldI
     return call(__func__, world, &world::FieldSystem::setAmount, id, amount);
 }
 
-FwResult FW_CALL fwWorld_SetParticleFieldHidden(FwWorld* world, FwParticleFieldId id,
-                                                uint32_t hidden) {
-    return call(__func__, world, &world::FieldSystem::setHidden, id, hidden != 0);
-}
-
 FwResult FW_CALL fwWorld_PaintParticleField(FwWorld* world, FwParticleFieldId id,
                                             const uint8_t* paint, const uint8_t* walls) {
     return call(__func__, world, &world::FieldSystem::paint, id, paint, walls);
-}
-
-FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld* world, FwParticleFieldId id,
-                                               FwParticleFieldState* state) {
-    return fill(__func__, world, state, &world::FieldSystem::fillState, id);
 }
 
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
@@ -650,10 +548,6 @@ FwResult FW_CALL fwWorld_FetchBurn(FwWorld* world, FwBurnableMeshId id, void* bu
 FwResult FW_CALL fwWorld_CreateBurn(FwWorld* world, const void* bytes, uint64_t size,
                                     FwBurnId* id) {
     return create(__func__, world, id, &world::BurnSystem::createBurn, edge::Bytes{bytes, size});
-}
-
-FwResult FW_CALL fwWorld_DestroyBurn(FwWorld* world, FwBurnId id) {
-    return call(__func__, world, &world::BurnSystem::destroyBurn, id);
 }
 
 FwResult FW_CALL fwWorld_PlayBurn(FwWorld* world, FwBurnableMeshId id, FwBurnId burn, float delay,

@@ -194,6 +194,8 @@ constexpr auto kLooks = [] {
 
 }  // namespace
 
+std::span<const MaterialAppearance, kLookCount> materialLooks() noexcept { return kLooks; }
+
 MaterialAppearance materialLook(uint32_t preset) noexcept {
     return kLooks[preset < kLookCount ? preset : 0];
 }
@@ -212,7 +214,5 @@ mesh::RefineHoles holesOf(const gpu::MaterialAppearance& look) noexcept {
     holes.tilesY = holes.wood ? 0.3f * 2.6f : look.holeTiles / look.drip;
     return holes;
 }
-
-float lookSpreadRate(uint32_t preset) noexcept { return materialLook(preset).spreadRate; }
 
 }  // namespace fw::components

@@ -5,19 +5,18 @@
 #include "shared/look.h"
 
 #include <cstdint>
+#include <span>
 
 namespace fw::components {
 
 constexpr uint32_t kLookCount = 14;  // FW_MATERIAL_PRESET_COUNT
 
+[[nodiscard]] std::span<const gpu::MaterialAppearance, kLookCount> materialLooks() noexcept;
 // Row of a FwMaterialPreset; a number beyond the table gets row 0, which never burns.
 [[nodiscard]] gpu::MaterialAppearance materialLook(uint32_t preset) noexcept;
 // Parameters of its holes, for refined meshes.
 [[nodiscard]] mesh::RefineHoles holesOf(const gpu::MaterialAppearance& look) noexcept;
 // s after ignition until nothing of it is visible, at the latest noise.
 [[nodiscard]] float lookHoleEnd(const gpu::MaterialAppearance& look) noexcept;
-// m/s at which the row's seconds were tuned; 0: never burns. BurnMaterial::timeScale is
-// spread rate (pace included) over this.
-[[nodiscard]] float lookSpreadRate(uint32_t preset) noexcept;
 
 }  // namespace fw::components

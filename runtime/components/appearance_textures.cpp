@@ -13,7 +13,7 @@
 namespace fw::components {
 namespace {
 
-constexpr int kSide = static_cast<int>(kLookTextureSide);
+constexpr int kSide = int(kLookTextureSide);
 constexpr int kColumns = 8;
 
 struct Texel {
@@ -23,9 +23,9 @@ using Plane = std::pmr::vector<Texel>;
 
 // Random number in [0, 1) of a lattice point.
 float random(int x, int y, int seed) {
-    const uint32_t h = static_cast<uint32_t>(x) * 73856093u ^ static_cast<uint32_t>(y) * 19349663u ^
-                       static_cast<uint32_t>(seed) * 83492791u;
-    return static_cast<float>(core::hash32(h) >> 8) * (1.0f / 16777216.0f);
+    const uint32_t h =
+        uint32_t(x) * 73856093u ^ uint32_t(y) * 19349663u ^ uint32_t(seed) * 83492791u;
+    return float(core::hash32(h) >> 8) * (1.0f / 16777216.0f);
 }
 
 int wrap(int value, int period) { return ((value % period) + period) % period; }
@@ -56,14 +56,13 @@ class Noise {
         for (int i = 0; i < octaves; ++i, period *= 2)
             for (int y = 0; y < period; ++y)
                 for (int x = 0; x < period; ++x)
-                    directions_.push_back(static_cast<uint8_t>(random(x, y, seed + i) * 16.0f));
+                    directions_.push_back(uint8_t(random(x, y, seed + i) * 16.0f));
     }
     float at(float u, float v) const {
         float amplitude = 1.0f, sum = 0.0f, weight = 0.0f;
         const uint8_t* lattice = directions_.data();
         for (int i = 0, period = period_; i < octaves_; ++i) {
-            const float p = gradientNoise(u * static_cast<float>(period),
-                                          v * static_cast<float>(period), period, lattice);
+            const float p = gradientNoise(u * float(period), v * float(period), period, lattice);
             sum += amplitude * (ridged_ ? 1.0f - 2.2f * std::fabs(p) : p * 1.4f);
             weight += amplitude;
             amplitude *= 0.55f;
@@ -76,9 +75,9 @@ class Noise {
  private:
     static float gradientNoise(float x, float y, int period, const uint8_t* lattice) {
         const float fx0 = std::floor(x), fy0 = std::floor(y);
-        const int left = wrapNear(static_cast<int>(fx0), period);
+        const int left = wrapNear(int(fx0), period);
         const int right = wrapNear(left + 1, period);
-        const int below = wrapNear(static_cast<int>(fy0), period);
+        const int below = wrapNear(int(fy0), period);
         const int above = wrapNear(below + 1, period);
         const float fx = x - fx0, fy = y - fy0;
         const float u = fx * fx * fx * (fx * (fx * 6.0f - 15.0f) + 10.0f);
@@ -113,11 +112,11 @@ class Voronoi {
         int x = 0, y = 0;
     };
     Cell nearest(float u, float v) const {
-        const float x = u * static_cast<float>(n_), y = v * static_cast<float>(n_);
-        const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
+        const float x = u * float(n_), y = v * float(n_);
+        const int ix = int(std::floor(x)), iy = int(std::floor(y));
         float best = 1e9f;
         Cell cell;
-        for (int j = iy - 1; j <= iy + 1; ++j) {
+        for (int j = iy - 1; j <= iy + 1; ++j)
             for (int i = ix - 1; i <= ix + 1; ++i) {
                 float dx, dy;
                 toPoint(i, j, x, y, dx, dy);
@@ -126,7 +125,6 @@ class Voronoi {
                     cell = {dx, dy, i, j};
                 }
             }
-        }
         return cell;
     }
     // Random number of the nearest cell.
@@ -136,10 +134,10 @@ class Voronoi {
     }
     // Distance to the nearest border, in cell sizes.
     float border(float u, float v) const {
-        const float x = u * static_cast<float>(n_), y = v * static_cast<float>(n_);
+        const float x = u * float(n_), y = v * float(n_);
         const Cell cell = nearest(u, v);
         float least = 1e9f;
-        for (int j = -2; j <= 2; ++j) {
+        for (int j = -2; j <= 2; ++j)
             for (int i = -2; i <= 2; ++i) {
                 if (i == 0 && j == 0) continue;
                 float dx, dy;
@@ -150,16 +148,15 @@ class Voronoi {
                 least =
                     std::min(least, 0.5f * ((cell.dx + dx) * ex + (cell.dy + dy) * ey) / length);
             }
-        }
         return least;
     }
 
  private:
     void toPoint(int i, int j, float x, float y, float& dx, float& dy) const {
         const std::array<float, 2>& offset =
-            offsets_[static_cast<size_t>(wrapNear(j, n_) * n_ + wrapNear(i, n_))];
-        dx = static_cast<float>(i) + 0.5f + offset[0] - x;
-        dy = static_cast<float>(j) + 0.5f + offset[1] - y;
+            offsets_[size_t(wrapNear(j, n_) * n_ + wrapNear(i, n_))];
+        dx = float(i) + 0.5f + offset[0] - x;
+        dy = float(j) + 0.5f + offset[1] - y;
     }
 
     int n_, seed_;
@@ -185,11 +182,11 @@ struct CharNoise {
 Block charBlock(const CharNoise& noise, float u, float v) {
     const auto side = [&](int i) {
         const int a = wrap(i, kColumns);
-        return static_cast<float>(i) + 0.8f * (random(a, 1, 201) - 0.5f) +
-               0.3f * (noise.sides[static_cast<size_t>(a)].at(u, v) - 0.5f);
+        return float(i) + 0.8f * (random(a, 1, 201) - 0.5f) +
+               0.3f * (noise.sides[size_t(a)].at(u, v) - 0.5f);
     };
     const float x = u * kColumns;
-    int i = static_cast<int>(std::floor(x)) - 1;
+    int i = int(std::floor(x)) - 1;
     float left = side(i), right = side(i + 1);
     while (right <= x) {
         ++i;
@@ -198,7 +195,7 @@ Block charBlock(const CharNoise& noise, float u, float v) {
     }
     const int column = wrap(i, kColumns);
     const auto sideStrength = [&](int q) {
-        const int part = (static_cast<int>(std::floor(v * 9.0f + 3.0f * random(q, 8, 2))) + 9) % 9;
+        const int part = (int(std::floor(v * 9.0f + 3.0f * random(q, 8, 2))) + 9) % 9;
         return (0.15f + random(q, part, 202)) * (0.5f + 0.5f * random(q, 2, 209));
     };
     const float l = x - left, r = right - x, across = l / (l + r);
@@ -206,18 +203,18 @@ Block charBlock(const CharNoise& noise, float u, float v) {
     block.crack = std::min(l / sideStrength(column), r / sideStrength((column + 1) % kColumns));
     block.inside = std::min(l, r);
 
-    const int splits = 5 + static_cast<int>(random(column, 5, 203) * 4.0f);
+    const int splits = 5 + int(random(column, 5, 203) * 4.0f);
     const float wander = 0.28f * (noise.splits.at(u, v) - 0.5f);
     const auto split = [&](int j) {
         const int b = wrap(j, splits);
-        return static_cast<float>(j) + 0.85f * (random(column, b, 204) - 0.5f) +
+        return float(j) + 0.85f * (random(column, b, 204) - 0.5f) +
                0.7f * (random(column, b, 205) - 0.5f) * (across - 0.5f) + wander;
     };
-    const float y = v * static_cast<float>(splits);
-    int j = static_cast<int>(std::floor(y)) - 1;
+    const float y = v * float(splits);
+    int j = int(std::floor(y)) - 1;
     while (split(j + 1) <= y) ++j;
     const int row = wrap(j, splits);
-    const float scale = static_cast<float>(kColumns) / static_cast<float>(splits);
+    const float scale = float(kColumns) / float(splits);
     const float below = (y - split(j)) * scale, above = (split(j + 1) - y) * scale;
     const float strengthBelow = 0.25f + 1.15f * random(column, row, 206);
     const float strengthAbove = 0.25f + 1.15f * random(column, (row + 1) % splits, 206);
@@ -227,44 +224,44 @@ Block charBlock(const CharNoise& noise, float u, float v) {
     return block;
 }
 
+// Fills a plane with paint(x, y).
+template <class Paint>
+void paintTexels(Plane& plane, const Paint& paint) {
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) plane[size_t(y * kSide + x)] = paint(x, y);
+}
+float middleOf(int texel) { return (float(texel) + 0.5f) / kSide; }
+
 void bakeNoise(Plane& plane, std::pmr::memory_resource* memory) {
     const Noise broad(5, 5, 1, false, memory), ridges(8, 4, 21, true, memory),
         fine(17, 4, 41, false, memory);
     const Voronoi cells(14, 0.9f, 61, memory);
-    for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x) {
-            const float u = (static_cast<float>(x) + 0.5f) / kSide;
-            const float v = (static_cast<float>(y) + 0.5f) / kSide;
-            plane[static_cast<size_t>(y * kSide + x)] = {{clamp01(broad.at(u, v)),
-                                                          clamp01(ridges.at(u, v)),
-                                                          clamp01(fine.at(u, v)), cells.id(u, v)}};
-        }
-    }
+    paintTexels(plane, [&](int x, int y) -> Texel {
+        const float u = middleOf(x), v = middleOf(y);
+        return {{clamp01(broad.at(u, v)), clamp01(ridges.at(u, v)), clamp01(fine.at(u, v)),
+                 cells.id(u, v)}};
+    });
 }
 
 void bakeChar(Plane& plane, std::pmr::memory_resource* memory) {
     const Noise aside(8, 3, 81, false, memory), along(8, 3, 91, false, memory);
     const CharNoise noise(memory);
     const Voronoi cells(20, 0.85f, 72, memory);
-    for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x) {
-            const float u = (static_cast<float>(x) + 0.5f) / kSide;
-            const float v = (static_cast<float>(y) + 0.5f) / kSide;
-            const float wu = u + 0.012f * (aside.at(u, v) - 0.5f);
-            const float wv = v + 0.012f * (along.at(u, v) - 0.5f);
-            const Block block = charBlock(noise, wu, wv);
-            plane[static_cast<size_t>(y * kSide + x)] = {
-                {block.crack, clamp01(cells.border(wu, wv)), block.id,
+    paintTexels(plane, [&](int x, int y) -> Texel {
+        const float u = middleOf(x), v = middleOf(y);
+        const float wu = u + 0.012f * (aside.at(u, v) - 0.5f);
+        const float wv = v + 0.012f * (along.at(u, v) - 0.5f);
+        const Block block = charBlock(noise, wu, wv);
+        return {{block.crack, clamp01(cells.border(wu, wv)), block.id,
                  clamp01(1.0f - std::exp(-block.inside / 0.09f))}};
-        }
-    }
+    });
 }
 
 // Slopes of the relief of char, so that a normal needs no further sample. The cracks' slopes
 // replace the blocks' numbers and heights in `charred`.
 void bakeRelief(const Plane& noise, Plane& charred, Plane& plane) {
     const auto at = [](const Plane& p, int x, int y) -> const Texel& {
-        return p[static_cast<size_t>((y & (kSide - 1)) * kSide + (x & (kSide - 1)))];
+        return p[size_t((y & (kSide - 1)) * kSide + (x & (kSide - 1)))];
     };
     constexpr float kWidth = 0.11f;  // of an open crack, in cells
     const auto crackDepth = [&](int x, int y) {
@@ -276,19 +273,18 @@ void bakeRelief(const Plane& noise, Plane& charred, Plane& plane) {
     const auto wrinkle = [&](int x, int y) {
         return 1.4f * at(noise, x, y).c[0] + 0.8f * at(noise, x, y).c[1];
     };
-    const auto pack = [](float slope, float range) { return clamp01(0.5f + 0.5f * slope / range); };
-    constexpr float kPerCell = 0.5f * kSide / kColumns, kPerTile = 0.5f * kSide;
-    for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x) {
-            plane[static_cast<size_t>(y * kSide + x)] = {
-                {pack((wrinkle(x + 1, y) - wrinkle(x - 1, y)) * kPerTile, gpu::kCrumpleSlopeRange),
-                 pack((wrinkle(x, y + 1) - wrinkle(x, y - 1)) * kPerTile, gpu::kCrumpleSlopeRange),
-                 pack((crackDepth(x + 1, y) - crackDepth(x - 1, y)) * kPerCell,
-                      gpu::kCrackSlopeRange),
-                 pack((crackDepth(x, y + 1) - crackDepth(x, y - 1)) * kPerCell,
-                      gpu::kCrackSlopeRange)}};
-        }
-    }
+    // Of a height, along x and y.
+    const auto slopes = [](const auto& height, int x, int y, float scale, float range) {
+        const auto pack = [&](float rise) { return clamp01(0.5f + 0.5f * (rise * scale) / range); };
+        return std::array{pack(height(x + 1, y) - height(x - 1, y)),
+                          pack(height(x, y + 1) - height(x, y - 1))};
+    };
+    paintTexels(plane, [&](int x, int y) -> Texel {
+        const auto [a, b] = slopes(wrinkle, x, y, 0.5f * kSide, gpu::kCrumpleSlopeRange);
+        const auto [c, d] =
+            slopes(crackDepth, x, y, 0.5f * kSide / kColumns, gpu::kCrackSlopeRange);
+        return {{a, b, c, d}};
+    });
     for (size_t i = 0; i < plane.size(); ++i) {
         charred[i].c[2] = plane[i].c[2];
         charred[i].c[3] = plane[i].c[3];
@@ -297,23 +293,20 @@ void bakeRelief(const Plane& noise, Plane& charred, Plane& plane) {
 
 void store(Plane& plane, std::byte* out) {
     for (int side = kSide;; side /= 2) {
-        for (int i = 0; i < side * side; ++i) {
-            for (const float value : plane[static_cast<size_t>(i)].c) {
-                *out++ = static_cast<std::byte>(static_cast<uint8_t>(value * 255.0f + 0.5f));
-            }
-        }
+        for (int i = 0; i < side * side; ++i)
+            for (const float value : plane[size_t(i)].c)
+                *out++ = std::byte(uint8_t(value * 255.0f + 0.5f));
         if (side == 1) return;
         const int half = side / 2;  // in place: every texel is read before it is overwritten
-        for (int y = 0; y < half; ++y) {
+        for (int y = 0; y < half; ++y)
             for (int x = 0; x < half; ++x) {
                 Texel sum;
                 for (int k = 0; k < 4; ++k) {
-                    const size_t from = static_cast<size_t>((2 * y + k / 2) * side + 2 * x + k % 2);
+                    const size_t from = size_t((2 * y + k / 2) * side + 2 * x + k % 2);
                     for (int c = 0; c < 4; ++c) sum.c[c] += 0.25f * plane[from].c[c];
                 }
-                plane[static_cast<size_t>(y * half + x)] = sum;
+                plane[size_t(y * half + x)] = sum;
             }
-        }
     }
 }
 

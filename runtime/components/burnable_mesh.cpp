@@ -60,7 +60,7 @@ bool sameTurn(const Pose& a, const Pose& b) noexcept {
 // A look was tuned at its own spread rate: a material twice as fast ages twice as fast. 0: no
 // ageing.
 float timeScale(const FwMaterialDef& def, float pace) noexcept {
-    const float tuned = lookSpreadRate(def.appearance);
+    const float tuned = materialLook(def.appearance).spreadRate;
     return tuned > 0 && def.spreadRate > 0 ? pace * def.spreadRate / tuned : 0.0f;
 }
 
@@ -97,19 +97,13 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     checkValues(def.tint, 3, "FwBurnableMeshDef::tint", 0, 100);
     std::copy_n(def.tint, 3, object.tint);
     object.userData = def.userData;
-    if (def.refineDepth > gpu::kRefineDepth)
-        core::refuse("FwBurnableMeshDef::refineDepth is %u; the limits are [0, %u].",
-                     def.refineDepth, gpu::kRefineDepth);
+    checkWhole(def.refineDepth, "FwBurnableMeshDef::refineDepth", 0, gpu::kRefineDepth);
     checkValue(def.refinePixelsPerEdge, "FwBurnableMeshDef::refinePixelsPerEdge", 1, 1000);
     checkValue(def.heatPsi, "FwBurnableMeshDef::heatPsi", 0, 1e8f);
     checkValue(def.heatStep, "FwBurnableMeshDef::heatStep", 0, 1000);
     if (def.multiplier) {
-        const uint32_t sides[2] = {def.multiplierWidth, def.multiplierHeight};
-        static constexpr const char* kNames[2] = {"multiplierWidth", "multiplierHeight"};
-        for (int i = 0; i < 2; ++i)
-            if (sides[i] < 1 || sides[i] > 8192)
-                core::refuse("FwBurnableMeshDef::%s is %u; the limits are [1, 8192].", kNames[i],
-                             sides[i]);
+        checkWhole(def.multiplierWidth, "FwBurnableMeshDef::multiplierWidth", 1, 8192);
+        checkWhole(def.multiplierHeight, "FwBurnableMeshDef::multiplierHeight", 1, 8192);
     }
     return object;
 }

@@ -23,16 +23,10 @@ uint32_t ticksOf(float seconds) noexcept {
 
 // Stiffness against bending of fresh material, [0, 1].
 float softness(uint32_t look) noexcept {
-    switch (look) {
-        case FW_MATERIAL_COTTON:
-            return 0.3f;
-        case FW_MATERIAL_POLYESTER:
-            return 0.05f;
-        case FW_MATERIAL_LEATHER:
-            return 0.4f;
-        default:
-            return 0.8f;
-    }
+    return look == FW_MATERIAL_COTTON      ? 0.3f
+           : look == FW_MATERIAL_POLYESTER ? 0.05f
+           : look == FW_MATERIAL_LEATHER   ? 0.4f
+                                           : 0.8f;
 }
 
 gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMaterial& record,
@@ -72,9 +66,7 @@ void checkDeform(const FwBurnableMeshDef& def) {
             "possible.",
             def.flags);
     checkLength(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
-    if (def.pinCount > gpu::kMaxPins)
-        core::refuse("FwBurnableMeshDef::pinCount is %u; the limits are [0, %u].", def.pinCount,
-                     gpu::kMaxPins);
+    checkWhole(def.pinCount, "FwBurnableMeshDef::pinCount", 0, gpu::kMaxPins);
     if (def.pinCount && !def.pins)
         core::refuse("FwBurnableMeshDef::pins is null but pinCount is %u.", def.pinCount);
     for (uint32_t i = 0; i < def.pinCount; ++i) {

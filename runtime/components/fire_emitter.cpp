@@ -246,10 +246,6 @@ float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noex
     return std::min(sum, kStuckRates * emitter.look.rate);
 }
 
-}  // namespace
-
-namespace {
-
 struct FrameOfEmitter {
     float seconds = 0;      // s
     float from[3] = {};     // m, place at the frame's start

@@ -52,6 +52,30 @@ void findNear(const FireFlame& f, std::span<const volume::Collider> all, float s
     }
 }
 
+// Adds a flame to a fire's state, whose light and colour are sums until takeMeans.
+void addFlame(FireState& s, float power, float diameter, float height, vec3 tip,
+              const volume::FlameLight& light) noexcept {
+    const float weight = std::max(light.flux, 1e-12f);
+    if (s.flames == 0) s.light = s.colour = vec3(0.0f);
+    if (height > s.height || s.flames == 0) {
+        s.height = height;
+        s.tip = tip;
+        s.pulseRate = volume::puffFrequency(diameter);
+    }
+    ++s.flames;
+    s.power += power;
+    s.light += weight * light.position;
+    s.colour += weight * light.colour;
+    s.intensity += weight;
+}
+
+void takeMeans(FireState& s) noexcept {
+    FW_ASSERT(s.flames > 0 && s.intensity > 0);
+    s.light /= s.intensity;
+    s.colour /= s.intensity;
+    s.intensity /= kLumensPerWatt * kFullCircle;
+}
+
 const gpu::FlameNode& nodeAt(const volume::Flame& f, float s) noexcept {
     FW_ASSERT(f.nodes.size() >= 2, "%zu nodes", f.nodes.size());
     const float step = std::max(f.nodes[1].along.w - f.nodes[0].along.w, 1e-6f);
@@ -138,23 +162,11 @@ FireState FireFlames::predictAhead(VolumetricFire& fire, const FireAir& air) con
         volume::FlameLight light = volume::meanLight(def);
         const float height = count > 0 ? def.height : aloneHeight(def.power, def.diameter);
         if (count > 0) light.position = line.at(0.4f * height).position;
-        if (height > s.height) {
-            s.height = height;
-            s.tip = count > 0 ? line.at(height).position : def.position + def.up * height;
-            s.pulseRate = volume::puffFrequency(def.diameter);
-        }
-        ++s.flames;
-        s.power += def.power;
-        if (s.flames == 1) s.colour = vec3(0.0f);
-        s.light += light.flux * light.position;
-        s.colour += light.flux * light.colour;
-        s.intensity += light.flux;
+        addFlame(s, def.power, def.diameter, height,
+                 count > 0 ? line.at(height).position : def.position + def.up * height, light);
     }
     if (s.flames == 0) return s;
-    const float sum = std::max(s.intensity, 1e-12f);
-    s.light /= sum;
-    s.colour /= sum;
-    s.intensity /= kLumensPerWatt * kFullCircle;
+    takeMeans(s);
     s.bounds = {s.light, s.light};
     return s;
 }
@@ -247,35 +259,20 @@ void FireFlames::sumStates() noexcept {
     for (const FireFlame& f : next_) {
         FireState& s = f.fire->nextState;
         const volume::Flame& flame = f.flame;
-        const float weight = std::max(flame.light.flux, 1e-12f);
-        if (s.flames == 0) {
-            s.bounds = flame.bounds;
-            s.light = s.colour = s.contact = vec3(0.0f);
-        } else {
-            s.bounds.low = glm::min(s.bounds.low, flame.bounds.low);
-            s.bounds.high = glm::max(s.bounds.high, flame.bounds.high);
-        }
-        if (flame.size.height > s.height || s.flames == 0) {
-            s.height = flame.size.height;
-            s.tip = vec3(nodeAt(flame, s.height).centre);
-            s.pulseRate = volume::puffFrequency(flame.size.diameter);
-        }
-        ++s.flames;
-        s.power += flame.power;
-        s.light += weight * flame.light.position;
-        s.colour += weight * flame.light.colour;
-        s.intensity += weight;
+        if (s.flames == 0) s.bounds = flame.bounds;
+        s.bounds.low = glm::min(s.bounds.low, flame.bounds.low);
+        s.bounds.high = glm::max(s.bounds.high, flame.bounds.high);
+        const float height = flame.size.height;
+        addFlame(s, flame.power, flame.size.diameter, height, vec3(nodeAt(flame, height).centre),
+                 flame.light);
         s.contactPower += flame.motion.contactPower;
         s.contact += flame.motion.contactPower * flame.motion.contact;
     }
     for (const FireFlame& f : next_) {
-        FW_ASSERT(f.fire->nextState.flames > 0 && f.fire->nextState.intensity > 0);
         FireState& s = f.fire->nextState;
         if (s.mean) continue;
         s.mean = true;
-        s.light /= s.intensity;
-        s.colour /= s.intensity;
-        s.intensity /= kLumensPerWatt * kFullCircle;
+        takeMeans(s);
         if (s.contactPower > 0) s.contact /= s.contactPower;
     }
 }

@@ -31,9 +31,8 @@ gpu::ExchangePush rulesOf(const OcclusionGridShape& shape) noexcept {
 }
 
 gpu::ivec3 placeOf(const float place[3]) noexcept {  // mm
-    return {int(millimetres(std::clamp(double(place[0]), -2e6, 2e6))),
-            int(millimetres(std::clamp(double(place[1]), -2e6, 2e6))),
-            int(millimetres(std::clamp(double(place[2]), -2e6, 2e6)))};
+    return {wholePlace(double(place[0])), wholePlace(double(place[1])),
+            wholePlace(double(place[2]))};
 }
 
 // The cells filled so far, and the distance of each cell's texel from its middle.
@@ -128,7 +127,7 @@ OcclusionGridShape makeOcclusionGridShape(const FwHeatOcclusionDef& def) {
 }
 
 void readOcclusionCells(const FwHeatOcclusionDef& def, const OcclusionGridShape& shape,
-                        std::pmr::vector<uint32_t>& solid) {
+                        float unitsPerMetre, std::pmr::vector<uint32_t>& solid) {
     solid.assign(shape.words(), 0);
     if (!def.cells && !def.distance) return;
     const double side = double(shape.cell) / 1000;
@@ -141,22 +140,24 @@ void readOcclusionCells(const FwHeatOcclusionDef& def, const OcclusionGridShape&
                     const uint32_t at[3] = {x, y, z};
                     float place[3];
                     for (size_t i = 0; i < 3; ++i)
-                        place[i] = float(double(shape.origin[i]) / 1000 + (at[i] + 0.5) * side);
-                    there = double(def.distance(def.distanceData, place)) < side / 2;
+                        place[i] = float(double(shape.origin[i]) / 1000 + (at[i] + 0.5) * side) *
+                                   unitsPerMetre;
+                    const float units = def.distance(def.distanceData, place);
+                    there = double(units / unitsPerMetre) < side / 2;
                 }
                 if (there) solid[cell / 32] |= 1u << cell % 32;
             }
 }
 
-bool plausible(const OcclusionGridShape& shape) noexcept {
-    if (shape == OcclusionGridShape{}) return true;
-    bool fine = shape.cell >= uint32_t(millimetres(kMinOcclusionCell)) &&
-                shape.cell <= uint32_t(millimetres(kMaxOcclusionCell));
+bool OcclusionGridShape::plausible() const noexcept {
+    if (*this == OcclusionGridShape{}) return true;
+    bool fine = cell >= uint32_t(millimetres(kMinOcclusionCell)) &&
+                cell <= uint32_t(millimetres(kMaxOcclusionCell));
     const int64_t far = millimetres(kMaxOcclusionOrigin);
     for (size_t i = 0; i < 3; ++i)
-        fine = fine && shape.counts[i] >= 1 && shape.counts[i] <= gpu::kMaxOcclusionSide &&
-               shape.origin[i] >= -far && shape.origin[i] <= far;
-    return fine && shape.cells() <= gpu::kMaxOcclusionCells;
+        fine = fine && counts[i] >= 1 && counts[i] <= gpu::kMaxOcclusionSide && origin[i] >= -far &&
+               origin[i] <= far;
+    return fine && cells() <= gpu::kMaxOcclusionCells;
 }
 
 void bakeOcclusion(const OcclusionGridShape& shape, std::span<const OcclusionObject> objects,

@@ -14,10 +14,6 @@
 
 namespace fw::components {
 
-struct OcclusionGridShape;
-// Whether makeOcclusionGridShape may have made it.
-[[nodiscard]] bool plausible(const OcclusionGridShape& shape) noexcept;
-
 struct OcclusionGridShape {  // places of the cells; counts of 0: there is no grid
     std::array<uint32_t, 3> counts{};
     std::array<int32_t, 3> origin{};  // mm, low corner
@@ -29,8 +25,9 @@ struct OcclusionGridShape {  // places of the cells; counts of 0: there is no gr
     template <class A>
     void serialize(A& a) {
         a(counts, origin, cell);
-        a.require(plausible(*this), "heat-occlusion grid");
+        a.require(plausible(), "heat-occlusion grid");
     }
+    [[nodiscard]] bool plausible() const noexcept;  // makeOcclusionGridShape may have made it
 };
 
 [[nodiscard]] uint32_t countsOf(
@@ -84,9 +81,9 @@ struct HeatOcclusion {
 
 // Throw core::Error naming the field.
 [[nodiscard]] OcclusionGridShape makeOcclusionGridShape(const FwHeatOcclusionDef& def);
-// Calls the def's callback for every cell, and reads its bytes.
+// Calls the def's callback, which gets and gives units, for every cell, and reads its bytes.
 void readOcclusionCells(const FwHeatOcclusionDef& def, const OcclusionGridShape& shape,
-                        std::pmr::vector<uint32_t>& solid);
+                        float unitsPerMetre, std::pmr::vector<uint32_t>& solid);
 
 struct OcclusionObject {  // an object that fills cells
     uint32_t slot = 0;

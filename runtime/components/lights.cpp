@@ -43,21 +43,8 @@ void join(FwLight& light, const FwLight& other) noexcept {
     light.power += other.power;
 }
 
-FwLight* nearestOf(std::span<FwLight> lights, const FwLight& to) noexcept {
-    FwLight* nearest = nullptr;
-    float least = 0;
-    for (FwLight& light : lights) {
-        const float d = squareDistance(light, to);
-        if (nearest && d >= least) continue;
-        nearest = &light;
-        least = d;
-    }
-    return nearest;
-}
-
 const FwLight* findLight(std::span<const FwLight> lights, uint32_t id) noexcept {
-    const auto at = std::find_if(lights.begin(), lights.end(),
-                                 [id](const FwLight& light) { return light.id == id; });
+    const auto at = std::ranges::find(lights, id, &FwLight::id);
     return at == lights.end() ? nullptr : &*at;
 }
 
@@ -156,10 +143,11 @@ void followLights(std::pmr::vector<FwLight>& shown, std::span<const FwLight> kno
         if (findLight(known, shown[i].id) || (!faint && shown.size() <= most)) continue;
         const FwLight gone = shown[i];
         shown.erase(shown.begin() + std::ptrdiff_t(i));
-        if (FwLight* nearest = nearestOf(shown, gone)) {
-            nearest->intensity += gone.intensity;
-            nearest->power += gone.power;
-        }
+        if (shown.empty()) continue;
+        FwLight& nearest = *std::ranges::min_element(
+            shown, {}, [&](const FwLight& light) { return squareDistance(light, gone); });
+        nearest.intensity += gone.intensity;
+        nearest.power += gone.power;
     }
 }
 

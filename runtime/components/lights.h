@@ -10,9 +10,8 @@
 
 namespace fw::components {
 
-constexpr float kLightShare = 0.3f;         // radiated share of a fire's power
-constexpr float kSphere = 12.56637f;        // sr
-constexpr double kFlickerStep = 0.07 * 60;  // 1/s, fastest change of a steady fire's light
+constexpr float kLightShare = 0.3f;   // radiated share of a fire's power
+constexpr float kSphere = 12.56637f;  // sr
 
 // Relative brightness of a fire at a time (s), mean 1: three sines without a common period, so that
 // the flicker never repeats. `phase`: rad, different for each fire.

@@ -71,6 +71,8 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     checkValues(def.tint, 3, "FwParticleFieldDef::tint", 0.0f, 10.0f);
     checkValue(def.opacity, "FwParticleFieldDef::opacity", 0.0f, 10.0f);
 
+    static_cast<FwParticleFieldDef&>(field) = def;
+    field.paint = field.walls = nullptr;  // the host's
     const bool ring = def.shape != FW_FIELD_BILLBOARD;
     field.def.width = def.width;
     field.def.height = def.height;
@@ -81,22 +83,9 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
         ring ? (def.open & (gpu::kFieldOpenTop | gpu::kFieldOpenBottom)) | gpu::kFieldRing
              : def.open;
     field.def.seed = def.seed ? def.seed : ownSeed;
-    field.flags = def.flags;
-    field.shape = def.shape;
-    std::copy_n(def.position, 3, field.position);
-    std::copy_n(def.size, 3, field.size);
-    std::copy_n(def.rotation, 4, field.rotation);
-    field.windResponse = ring ? 0 : def.windResponse;
-    field.source = def.source;
-    field.sourceSize = def.sourceSize;
-    std::copy_n(def.sourceAt, 2, field.sourceAt);
-    std::copy_n(def.tint, 3, field.tint);
-    field.opacity = def.opacity;
-    field.userData = def.userData;
-    const size_t cells = size_t(def.width) * def.height;
-    field.paint.resize(cells);
-    field.walls.resize(cells);
-    field.masks.resize(cells);
+    if (ring) field.windResponse = 0;
+    for (auto* cells : {&field.painted, &field.walled, &field.masks})
+        cells->resize(size_t(def.width) * def.height);
     paintField(field, def.paint, def.walls);
 }
 
@@ -128,13 +117,14 @@ void setFieldAmount(ParticleField& field, float amount) {
 }
 
 void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept {
-    if (paint) std::copy_n(paint, field.paint.size(), field.paint.begin());
-    if (walls) std::copy_n(walls, field.walls.size(), field.walls.begin());
-    FW_ASSERT(field.paint.size() == field.masks.size() && field.walls.size() == field.masks.size(),
-              "%zu, %zu and %zu cells", field.paint.size(), field.walls.size(), field.masks.size());
+    if (paint) std::copy_n(paint, field.painted.size(), field.painted.begin());
+    if (walls) std::copy_n(walls, field.walled.size(), field.walled.begin());
+    FW_ASSERT(
+        field.painted.size() == field.masks.size() && field.walled.size() == field.masks.size(),
+        "%zu, %zu and %zu cells", field.painted.size(), field.walled.size(), field.masks.size());
     for (size_t i = 0; i < field.masks.size(); ++i)
-        field.masks[i] = field.walls[i] ? uint8_t(gpu::kFieldWall)
-                                        : std::min<uint8_t>(field.paint[i], gpu::kFieldWall - 1);
+        field.masks[i] = field.walled[i] ? uint8_t(gpu::kFieldWall)
+                                         : std::min<uint8_t>(field.painted[i], gpu::kFieldWall - 1);
 }
 
 field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexcept {

@@ -9,21 +9,13 @@ namespace fw::components {
 
 static_assert(field::kFieldPresets == FW_FIELD_PRESET_COUNT);
 
-struct ParticleField {
-    explicit ParticleField(std::pmr::memory_resource* memory)
-        : paint(memory), walls(memory), masks(memory) {}
+struct ParticleField : FwParticleFieldDef {
+    explicit ParticleField(std::pmr::memory_resource* from)
+        : FwParticleFieldDef{}, painted(from), walled(from), masks(from) {}
 
-    field::FieldDef def;  // without wind
-    uint32_t flags = 0;   // FwParticleFieldFlags
-    uint32_t shape = 0;   // FwFieldShape
-    float position[3] = {}, size[3] = {1, 1, 1}, rotation[4] = {0, 0, 0, 1};
-    float windResponse = 0;
-    uint32_t source = 0;  // FwFieldSource
-    float sourceSize = 0.2f, sourceAt[2] = {};
-    float tint[3] = {1, 1, 1}, opacity = 1;
-    uint64_t userData = 0;
-    std::pmr::vector<uint8_t> paint, walls;  // the host's, one per cell
-    std::pmr::vector<uint8_t> masks;         // both combined, for the backend
+    field::FieldDef def;                        // without wind
+    std::pmr::vector<uint8_t> painted, walled;  // the host's, one per cell
+    std::pmr::vector<uint8_t> masks;            // both combined, for the backend
 };
 
 void setFieldPreset(FwParticleFieldDef& def, uint32_t preset) noexcept;

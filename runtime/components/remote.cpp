@@ -11,14 +11,10 @@ namespace fw::components {
 namespace {
 
 constexpr double kMillimetres = 1000;
-constexpr double kFarthest = 2.0e6;  // m: poses end at 1e6 m, boxes a little later
-constexpr double kWeakest = 1000;    // W/m^2, least flux that counts: nothing ignites below 4300
-constexpr double kCoolest = 40;      // K, least excess of a plume that counts
+constexpr double kWeakest = 1000;  // W/m^2, least flux that counts: nothing ignites below 4300
+constexpr double kCoolest = 40;    // K, least excess of a plume that counts
 
 int whole(double value) noexcept { return int(std::lround(std::clamp(value, -2.0e9, 2.0e9))); }
-int placeOf(double metres) noexcept {  // mm
-    return int(millimetres(std::clamp(metres, -kFarthest, kFarthest)));
-}
 
 void turn(const Pose& pose, gpu::ivec4 (&rows)[3]) noexcept {
     for (int r = 0; r < 3; ++r)
@@ -60,22 +56,16 @@ void placeExchangeObject(const Pose& pose, const mesh::BurnDomain& domain,
         for (int c = 0; c < 3; ++c)
             (*rows[i])[c] = whole(double(pose.rotation[i][c]) * double(pose.stretch[c]) * unit *
                                   double(1u << out.shift));
-        (*rows[i])[3] = placeOf(origin[i]);
+        (*rows[i])[3] = wholePlace(origin[i]);
         *turns[i] = turned[i];
     }
-    int boxLow[3], boxHigh[3];
-    for (int i = 0; i < 3; ++i) {
-        boxLow[i] = 2000000000;
-        boxHigh[i] = -2000000000;
-    }
+    gpu::ivec3 boxLow(2000000000), boxHigh(-2000000000);
     for (uint32_t corner = 0; corner < 8; ++corner) {
         const gpu::ivec3 at = gpu::toWorldMm(
             out, gpu::ivec3((corner & 1 ? high : low)[0], (corner & 2 ? high : low)[1],
                             (corner & 4 ? high : low)[2]));
-        for (int i = 0; i < 3; ++i) {
-            boxLow[i] = std::min(boxLow[i], at[i]);
-            boxHigh[i] = std::max(boxHigh[i], at[i] + 1);
-        }
+        boxLow = glm::min(boxLow, at);
+        boxHigh = glm::max(boxHigh, at + 1);
     }
     for (int i = 0; i < 3; ++i) {
         FW_ASSERT(boxLow[i] < boxHigh[i], "axis %d: %d to %d mm", i, boxLow[i], boxHigh[i]);
@@ -117,7 +107,7 @@ void placeHeatOccluder(const Pose& pose, const float halfSize[3], gpu::HeatOcclu
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)  // transposed: world to box
             (*turns[r])[c] = whole(double(pose.rotation[c][r]) * 4096);
-        (*turns[r])[3] = placeOf(pose.translation[r]);
+        (*turns[r])[3] = wholePlace(pose.translation[r]);
         out.size[r] = uint32_t(std::clamp(double(halfSize[r]) * double(pose.scale) *
                                               std::fabs(double(pose.stretch[r])) * kMillimetres,
                                           0.0, 30000.0));

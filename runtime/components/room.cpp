@@ -21,8 +21,6 @@ constexpr uint32_t kKnownRoomFlags = FW_ROOM_REFILL;
 constexpr double kOxygenPerJoule = 1 / (13.1e6 * 1.330);
 constexpr double kPeriod = double(gpu::kRoomPeriod) / gpu::kTicksPerSecond;  // s
 
-int64_t wholeOf(double value) noexcept { return std::llround(value); }
-
 }  // namespace
 
 Room makeRoom(const FwRoomDef& def) {
@@ -52,26 +50,26 @@ Room makeRoom(const FwRoomDef& def) {
     Room room;
     for (size_t i = 0; i < 3; ++i) {
         room.middle[i] = millimetres(double(def.position[i]));
-        room.half[i] = wholeOf(double(def.halfSize[i]) * 1000);
+        room.half[i] = std::llround(double(def.halfSize[i]) * 1000);
     }
-    for (size_t i = 0; i < 9; ++i) room.axes[i] = wholeOf(axes[i] * kQ14);
-    room.volume = uint64_t(wholeOf(volume * 1000));
-    room.vent = uint64_t(wholeOf(double(def.vent) * 1e6));
+    for (size_t i = 0; i < 9; ++i) room.axes[i] = std::llround(axes[i] * kQ14);
+    room.volume = uint64_t(std::llround(volume * 1000));
+    room.vent = uint64_t(std::llround(double(def.vent) * 1e6));
     room.oxygen = uint32_t(std::min(double(def.oxygen) * kWholeAir, kWholeAir - 1));
     return room;
 }
 
-bool plausible(const Room& room) noexcept {
+bool Room::plausible() const noexcept {
     const auto within = [](int64_t value, double low, double high) {
         return double(value) >= low && double(value) <= high;
     };
     const double far = double(kFarthestRoom) * 1000;
-    bool fine = within(int64_t(room.volume), double(kMinVolume) * 1000, double(kMaxVolume) * 1000);
-    fine &= within(int64_t(room.vent), 0, double(kMaxVent) * 1e6);
+    bool fine = within(int64_t(volume), double(kMinVolume) * 1000, double(kMaxVolume) * 1000);
+    fine &= within(int64_t(vent), 0, double(kMaxVent) * 1e6);
     for (size_t i = 0; i < 3; ++i)
-        fine &= within(room.middle[i], -far, far) &&
-                within(room.half[i], double(kMinHalf) * 1000, double(kMaxHalf) * 1000);
-    for (const int64_t axis : room.axes) fine &= within(axis, -1.01 * kQ14, 1.01 * kQ14);
+        fine &= within(middle[i], -far, far) &&
+                within(half[i], double(kMinHalf) * 1000, double(kMaxHalf) * 1000);
+    for (const int64_t axis : axes) fine &= within(axis, -1.01 * kQ14, 1.01 * kQ14);
     return fine;
 }
 
@@ -106,7 +104,7 @@ gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) n
     // An implicit step: stable for any vent.
     const double changes = double(room.vent) / 1e6 / volume * kPeriod * double(pace);
     gpu::Room record{};
-    record.takes = uint32_t(wholeOf(kOxygenPerJoule * kWholeAir * 1048576 / volume));
+    record.takes = uint32_t(std::llround(kOxygenPerJoule * kWholeAir * 1048576 / volume));
     record.mixes = uint32_t(std::min(changes / (1 + changes) * kWholeAir, kWholeAir - 1));
     record.starts = begins.oxygen;
     record.epoch = begins.epoch;
@@ -115,7 +113,7 @@ gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) n
     // Powers beyond the range of the mean never occur.
     const double flashes = double(room.flashPower()) * kPeriod * double(pace);
     if (flashes <= double(gpu::kMaxFlash))
-        record.flashes = std::max(uint32_t(wholeOf(flashes)), 1u);
+        record.flashes = std::max(uint32_t(std::llround(flashes)), 1u);
     return record;
 }
 

@@ -7,10 +7,6 @@
 
 namespace fw::components {
 
-struct Room;
-// Whether makeRoom may have made it.
-[[nodiscard]] bool plausible(const Room& room) noexcept;
-
 struct Room {
     std::array<int64_t, 3> middle{};                     // mm
     std::array<int64_t, 3> half{};                       // mm, half of its sides
@@ -24,8 +20,9 @@ struct Room {
     template <class A>
     void serialize(A& a) {
         a(middle, half, axes, volume, vent, oxygen);
-        a.require(plausible(*this), "room");
+        a.require(plausible(), "room");
     }
+    [[nodiscard]] bool plausible() const noexcept;  // makeRoom may have made it
 };
 
 // Throws core::Error naming the field.

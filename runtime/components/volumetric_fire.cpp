@@ -213,10 +213,7 @@ void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def) {
         volume::setTrack(track, {def->times, def->keyCount}, points, def->pointsPerKey,
                          (def->flags & FW_FIRE_TRACK_LOOP) != 0);
     }
-    fire.track.times.swap(track.times);
-    fire.track.points.swap(track.points);
-    fire.track.pointsPerKey = track.pointsPerKey;
-    fire.track.loops = track.loops;
+    fire.track = std::move(track);
     fire.trackWeight = def ? def->weight : 1.0f;
     ++fire.trackVersion;
     splitAgain(fire);

@@ -65,16 +65,15 @@ void readWindPoints(const FwWindGridDef& def, std::pmr::vector<WindPoint>& point
         points.push_back(makeWindPoint(def.velocities + 3 * size_t{i}, i));
 }
 
-bool plausible(const WindGridShape& shape) noexcept {
-    if (shape == WindGridShape{}) return true;
-    bool fine = shape.blend < FW_WIND_BLEND_COUNT && shape.cell >= millimetres(kMinGridCell) &&
-                shape.cell <= millimetres(kMaxGridCell) && shape.fade >= 0 &&
-                shape.fade <= millimetres(kMaxGridFade);
+bool WindGridShape::plausible() const noexcept {
+    if (*this == WindGridShape{}) return true;
+    bool fine = blend < FW_WIND_BLEND_COUNT && cell >= millimetres(kMinGridCell) &&
+                cell <= millimetres(kMaxGridCell) && fade >= 0 && fade <= millimetres(kMaxGridFade);
     const int64_t far = millimetres(kFarthestGrid);
     for (size_t i = 0; i < 3; ++i)
-        fine = fine && shape.counts[i] >= 2 && shape.counts[i] <= limits::kWindGridSide &&
-               shape.origin[i] >= -far && shape.origin[i] <= far;
-    return fine && shape.points() <= limits::kWindGridPoints;
+        fine = fine && counts[i] >= 2 && counts[i] <= limits::kWindGridSide && origin[i] >= -far &&
+               origin[i] <= far;
+    return fine && points() <= limits::kWindGridPoints;
 }
 
 fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,

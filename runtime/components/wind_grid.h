@@ -8,10 +8,6 @@
 
 namespace fw::components {
 
-struct WindGridShape;
-// Whether makeWindGridShape may have made it.
-[[nodiscard]] bool plausible(const WindGridShape& shape) noexcept;
-
 struct WindGridShape {  // places of the points; counts of 0: there is no grid
     uint32_t blend = 0;
     std::array<uint32_t, 3> counts{};
@@ -23,8 +19,9 @@ struct WindGridShape {  // places of the points; counts of 0: there is no grid
     template <class A>
     void serialize(A& a) {
         a(blend, counts, origin, cell, fade);
-        a.require(plausible(*this), "wind grid");
+        a.require(plausible(), "wind grid");
     }
+    [[nodiscard]] bool plausible() const noexcept;  // makeWindGridShape may have made it
 };
 
 using WindPoint = std::array<int16_t, 3>;  // 1/128 m/s

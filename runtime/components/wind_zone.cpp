@@ -131,18 +131,18 @@ WindZone makeWindZone(const FwWindZoneDef& def) {
     return zone;
 }
 
-bool plausible(const WindZone& zone) noexcept {
+bool WindZone::plausible() const noexcept {
     const auto within = [](int64_t value, int64_t low, int64_t high) {
         return value >= low && value <= high;
     };
     const int64_t far = millimetres(kFarthestZone), most = millimetres(kMaxZoneSize);
-    bool fine = zone.shape < FW_WIND_SHAPE_COUNT && zone.flow < FW_WIND_FLOW_COUNT &&
-                zone.blend < FW_WIND_BLEND_COUNT &&
-                within(zone.priority, -kMaxZonePriority, kMaxZonePriority) &&
-                within(zone.speed, -kMaxZoneWind, kMaxZoneWind) && within(zone.fades, 0, kOne);
+    bool fine = shape < FW_WIND_SHAPE_COUNT && flow < FW_WIND_FLOW_COUNT &&
+                blend < FW_WIND_BLEND_COUNT &&
+                within(priority, -kMaxZonePriority, kMaxZonePriority) &&
+                within(speed, -kMaxZoneWind, kMaxZoneWind) && within(fades, 0, kOne);
     for (size_t i = 0; i < 3; ++i)
-        fine &= within(zone.middle[i], -far, far) && within(zone.axis[i], -kOne, kOne) &&
-                within(zone.size[i], i < sizesOf(zone.shape) ? 1 : 0, most);
+        fine &= within(middle[i], -far, far) && within(axis[i], -kOne, kOne) &&
+                within(size[i], i < sizesOf(shape) ? 1 : 0, most);
     return fine;
 }
 
@@ -153,14 +153,7 @@ void sortWindZones(std::span<WindZone> zones) noexcept {
 }
 
 int64_t millimetres(double metres) noexcept { return int64_t(std::floor(metres * 1000 + 0.5)); }
-
-WindPlace windPlace(const float place[3]) noexcept {
-    return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};
-}
-
-WindPlace windPlace(const double place[3]) noexcept {
-    return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};
-}
+int wholePlace(double metres) noexcept { return int(millimetres(std::clamp(metres, -2e6, 2e6))); }
 
 fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector& wind,
                         const WindPlace& place) noexcept {

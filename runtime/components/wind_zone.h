@@ -12,10 +12,6 @@ struct WindPlace {  // mm, world
     int64_t x = 0, y = 0, z = 0;
 };
 
-struct WindZone;
-// Whether makeWindZone may have made it.
-[[nodiscard]] bool plausible(const WindZone& zone) noexcept;
-
 struct WindZone {
     uint32_t shape = 0, flow = 0, blend = 0;  // FwWindShape, FwWindFlow, FwWindBlend
     int32_t priority = 0;
@@ -29,8 +25,9 @@ struct WindZone {
     template <class A>
     void serialize(A& a) {
         a(shape, flow, blend, priority, middle, axis, size, speed, fades);
-        a.require(plausible(*this), "wind zone");
+        a.require(plausible(), "wind zone");
     }
+    [[nodiscard]] bool plausible() const noexcept;  // makeWindZone may have made it
 };
 
 // Throws core::Error naming the field.
@@ -41,8 +38,12 @@ void sortWindZones(std::span<WindZone> zones) noexcept;
 
 // m to the nearest mm. Halves round up everywhere, so that moves by whole metres are exact.
 [[nodiscard]] int64_t millimetres(double metres) noexcept;
-[[nodiscard]] WindPlace windPlace(const float place[3]) noexcept;
-[[nodiscard]] WindPlace windPlace(const double place[3]) noexcept;
+// The same of a place: poses end at 1e6 m, boxes and rays a little later.
+[[nodiscard]] int wholePlace(double metres) noexcept;
+template <class Number>
+[[nodiscard]] WindPlace windPlace(const Number* place) noexcept {
+    return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};
+}
 
 // The wind at a place, within +-120 m/s along each axis. `wind`: around all zones. `zones`: sorted.
 [[nodiscard]] fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector& wind,

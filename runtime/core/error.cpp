@@ -32,12 +32,14 @@ void writeLengths(const char* text, double unitsPerMetre, char* out, size_t size
 
 namespace {
 
-Error errorOf(FwResult result, const char* format, va_list arguments) noexcept {
+// Ends the arguments.
+[[noreturn]] void raise(FwResult result, const char* format, va_list& arguments) {
     Error error;
     error.result = result;
     std::vsnprintf(error.marked, sizeof error.marked, format, arguments);
+    va_end(arguments);
     writeLengths(error.marked, 1, error.message, sizeof error.message);
-    return error;
+    throw error;
 }
 
 }  // namespace
@@ -45,25 +47,19 @@ Error errorOf(FwResult result, const char* format, va_list arguments) noexcept {
 void fail(FwResult result, const char* format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    const Error error = errorOf(result, format, arguments);
-    va_end(arguments);
-    throw error;
+    raise(result, format, arguments);
 }
 
 void refuse(const char* format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    const Error error = errorOf(FW_ERROR_INVALID_ARGUMENT, format, arguments);
-    va_end(arguments);
-    throw error;
+    raise(FW_ERROR_INVALID_ARGUMENT, format, arguments);
 }
 
 void failData(const char* format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    const Error error = errorOf(FW_ERROR_BAD_DATA, format, arguments);
-    va_end(arguments);
-    throw error;
+    raise(FW_ERROR_BAD_DATA, format, arguments);
 }
 
 }  // namespace fw::core

@@ -3,6 +3,7 @@
 #pragma once
 #include "core/assert.h"
 #include "core/error.h"
+#include "core/growth.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -23,26 +24,22 @@ class HandlePool {
 
     template <class... Arguments>
     Id create(Arguments&&... arguments) {
-        uint32_t index = 0;
-        if (!free_.empty()) {
-            index = free_.back();  // sorted descending: the lowest index is last
-            FW_ASSERT(index < slots_.size() && !slots_[index].value, "slot %u of %zu", index,
-                      slots_.size());
-            Slot& slot = slots_[index];
-            slot.value.emplace(std::forward<Arguments>(arguments)...);
-            free_.pop_back();
-        } else {
-            index = uint32_t(slots_.size());
-            if (free_.capacity() < slots_.size() + 1)  // so that destroy never allocates
-                free_.reserve(std::max(slots_.size() + 1, 2 * free_.capacity()));
+        const bool grows = free_.empty();
+        if (grows) {
+            growTo(free_, slots_.size() + 1);  // so that destroy never allocates
             slots_.emplace_back();
-            try {
-                slots_.back().value.emplace(std::forward<Arguments>(arguments)...);
-            } catch (...) {
-                slots_.pop_back();
-                throw;
-            }
         }
+        // The free slots are sorted descending: the lowest index is last.
+        const uint32_t index = grows ? uint32_t(slots_.size() - 1) : free_.back();
+        FW_ASSERT(index < slots_.size() && !slots_[index].value, "slot %u of %zu", index,
+                  slots_.size());
+        try {
+            slots_[index].value.emplace(std::forward<Arguments>(arguments)...);
+        } catch (...) {
+            if (grows) slots_.pop_back();
+            throw;
+        }
+        if (!grows) free_.pop_back();
         ++live_;
         return Id{index + 1, slots_[index].generation};
     }

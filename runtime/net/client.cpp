@@ -144,7 +144,9 @@ void Client::readStream(core::Reader& reader, bool newest) {
     if (marks_.size() == kMarks) marks_.pop_back();
     FW_ASSERT(marks_.size() < kMarks, "%zu marks", marks_.size());
     marks_.push_back(mark);
-    settleMarks();
+    for (const Reached& one : marks_)
+        if (one.records <= received_) reached_ = std::max(reached_, one.step);
+    std::erase_if(marks_, [&](const Reached& one) { return one.step <= reached_; });
 }
 
 // A record, or a run of skipped ones, in record_.
@@ -211,12 +213,6 @@ void Client::advance(uint32_t record) noexcept {
         at = at->first + at->second.count <= next_ ? waiting_.erase(at) : std::next(at);
 }
 
-void Client::settleMarks() noexcept {
-    for (const Reached& mark : marks_)
-        if (mark.records <= received_) reached_ = std::max(reached_, mark.step);
-    std::erase_if(marks_, [&](const Reached& mark) { return mark.step <= reached_; });
-}
-
 void Client::readPiece(core::Reader& reader, bool newest) {
     ChunkHead head;
     const std::span<const std::byte> piece = readChunk(reader, head);
@@ -244,7 +240,7 @@ void Client::ask(Request what) noexcept {
     tilesDue_ = false;
 }
 
-void Client::scrambleForTest(const world::World& world, const char* why, uint32_t slot) {
+void Client::askAgain(const world::World& world, const char* why, uint32_t slot) {
     if (requested_ != Request::nothing) return;
     // Where tiles alone did not help, all of it is asked for.
     const bool tiles = slot != kNoSlot && repaired_ > kRepairTrust;
@@ -369,7 +365,7 @@ void Client::compare(world::World& world) {
             std::snprintf(why, sizeof why,
                           "Burnable mesh %u differs from the server's at tick %llu.",
                           theirs.slot + 1, static_cast<unsigned long long>(theirs.tick));
-            scrambleForTest(world, why, theirs.slot);
+            askAgain(world, why, theirs.slot);
         }
         return true;
     });
@@ -396,12 +392,12 @@ void Client::takeTurn(world::World& world, FwNetAction& turn) {
         if (record_.step > now) break;
         if (record_.kind == RecordKind::message && holdsMessages()) break;
         if (record_.step < now)
-            scrambleForTest(world, "A record of the server's comes too late.", kNoSlot);
+            askAgain(world, "A record of the server's comes too late.", kNoSlot);
         if (record_.kind == RecordKind::command) {
             try {
                 world.persistence().apply(record_.command);
             } catch (const core::Error& error) {
-                scrambleForTest(world, error.message, kNoSlot);
+                askAgain(world, error.message, kNoSlot);
             }
         } else if (record_.kind == RecordKind::hashes) {
             for (uint32_t i = 0; i < record_.hashCount; ++i)
@@ -506,7 +502,7 @@ bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& siz
                       runs()};
         visitStatus(writer, status);
     } else if (kind == PacketKind::tiles) {
-        visitNumbers(writer, ownNumber_, wrongSlot_);
+        writer.numbers(ownNumber_, wrongSlot_);
         for (const uint32_t hash : ownBlocks_) writer.number(hash);
     }
     FW_ASSERT(packet_.size() <= def_.packetBytes, "%zu bytes", packet_.size());

@@ -51,8 +51,7 @@ class Client {
     void forgetState() noexcept;
     void compare(world::World& world);
     // slot: of the object that differs; kNoSlot: more than one may.
-    void scrambleForTest(const world::World& world, const char* why, uint32_t slot);
-    void settleMarks() noexcept;
+    void askAgain(const world::World& world, const char* why, uint32_t slot);
     void handMessage(FwNetAction& turn) noexcept;
     [[nodiscard]] bool holdsMessages() const noexcept;
     // Hands on the messages before the state that came. True: they are all handed on.

@@ -22,8 +22,8 @@ uint32_t sumOf(std::span<const std::byte> packet) noexcept {
 core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& head) {
     out.clear();
     core::Writer writer(out);
-    visitNumbers(writer, kMagic, uint16_t(kPacketVersion), uint16_t(head.kind), uint32_t(0),
-                 head.session, head.client, head.sequence);
+    writer.numbers(kMagic, uint16_t(kPacketVersion), uint16_t(head.kind), uint32_t(0), head.session,
+                   head.client, head.sequence);
     return writer;
 }
 
@@ -39,7 +39,7 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
     uint32_t magic = 0, sum = 0;
     uint16_t version = 0, kind = 0;
     PacketHead head;
-    visitNumbers(reader, magic, version, kind, sum, head.session, head.client, head.sequence);
+    reader.numbers(magic, version, kind, sum, head.session, head.client, head.sequence);
     if (magic != kMagic)
         core::failData("The packet begins with 0x%08X; 0x%08X (\"FWNP\") is expected.", magic,
                        kMagic);

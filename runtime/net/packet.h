@@ -42,12 +42,6 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader);
 // Throws unless all of the packet is read. `body`: what ends here.
 void endPacket(const core::Reader& reader, const char* body);
 
-// Visits numbers in the order of the packet: a Writer writes them, a Reader reads them.
-template <class Stream, class... Number>
-void visitNumbers(Stream& stream, Number&&... numbers) {
-    (stream.number(numbers), ...);
-}
-
 // s without an accepted packet: a packet that seems old then restarts the sequence, since its
 // newest number may have been wrong.
 constexpr double kMaxSilent = 3;

@@ -1,6 +1,7 @@
 // The protocol as one table: the phases of a peer, what the server sends in each phase, and the
 // phase that each event leads to. A packet whose event the table does not have is refused.
 #pragma once
+#include "core/assert.h"
 #include "flamewright/flamewright.h"
 
 #include <array>
@@ -25,7 +26,7 @@ enum class PeerPhase : uint8_t {
 
 enum class PeerEvent : uint8_t {
     greets,
-    requestsNothing,
+    requestsNothing,  // the requests in the order of Request
     requestsState,
     requestsTiles,
     loads,   // it has loaded a state or tiles that it was given
@@ -77,6 +78,10 @@ constexpr std::array<PeerRule, size_t(PeerPhase::count)> kPeerRules = [] {
 }();
 
 constexpr const PeerRule& ruleOf(PeerPhase phase) noexcept { return kPeerRules[size_t(phase)]; }
+constexpr PeerEvent eventOf(uint16_t request) noexcept {
+    FW_ASSERT(request <= 2, "request %u", uint32_t(request));
+    return PeerEvent(uint16_t(PeerEvent::requestsNothing) + request);
+}
 constexpr PeerPhase phaseAfter(PeerPhase phase, PeerEvent event) noexcept {
     return ruleOf(phase).after[size_t(event)];
 }

@@ -20,11 +20,11 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
               "%u hashes, %zu bytes", record.hashCount, record.message.size());
     const bool isCommand = record.kind == RecordKind::command;
     const auto command = uint32_t(isCommand ? record.command.index() : 0);
-    visitNumbers(writer, uint16_t(uint32_t(record.kind) | command << 8), record.step);
+    writer.numbers(uint16_t(uint32_t(record.kind) | command << 8), record.step);
     if (isCommand) {
         world::writeCommand(record.command, out);
     } else if (record.kind == RecordKind::hashes) {
-        visitNumbers(writer, record.tick, record.first, record.stride);
+        writer.numbers(record.tick, record.first, record.stride);
         for (uint32_t i = 0; i < record.hashCount; ++i) writer.number(record.hashes[i]);
     } else if (record.kind == RecordKind::message) {
         out.insert(out.end(), record.message.begin(), record.message.end());
@@ -36,7 +36,7 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
 void readRecord(std::span<const std::byte> bytes, Record& record) {
     core::Reader reader(bytes, "packet");
     uint16_t head = 0;
-    visitNumbers(reader, head, record.step);
+    reader.numbers(head, record.step);
     const uint32_t kind = head & 0xFF, command = head >> 8;
     const bool isCommand = kind == uint32_t(RecordKind::command);
     if (kind >= uint32_t(RecordKind::count) || (!isCommand && command != 0))
@@ -45,7 +45,7 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
     if (isCommand) {
         world::readCommand(command, reader.take(reader.left()), record.command);
     } else if (record.kind == RecordKind::hashes) {
-        visitNumbers(reader, record.tick, record.first, record.stride);
+        reader.numbers(record.tick, record.first, record.stride);
         record.hashCount = uint32_t(reader.left() / sizeof(uint64_t));
         if (record.hashCount > record.hashes.size() || record.stride == 0)
             core::failData("The packet has %u hashes of every %u objects.", record.hashCount,

@@ -29,8 +29,7 @@ struct StreamHead {         // of a packet of records
 };
 template <class Stream, class Head>
 void visitStreamHead(Stream& stream, Head& head) {
-    visitNumbers(stream, head.outdated, head.step, head.records, head.first, head.count,
-                 head.flags);
+    stream.numbers(head.outdated, head.step, head.records, head.first, head.count, head.flags);
 }
 
 // Runs of records that a client has behind a gap, at most so many in a status.
@@ -60,8 +59,8 @@ struct Status {             // of a client
 // Runs are gaps and lengths of 16 bits. A Reader throws where they can be none.
 template <class Stream, class S>
 void visitStatus(Stream& stream, S& s) {
-    visitNumbers(stream, s.request, s.loaded, s.next, s.step, s.answered, s.state, s.base, s.came,
-                 s.runs.count);
+    stream.numbers(s.request, s.loaded, s.next, s.step, s.answered, s.state, s.base, s.came,
+                   s.runs.count);
     if constexpr (Stream::kReads)
         if (s.runs.count > kMaxRuns || stream.left() != s.runs.count * 2 * sizeof(uint16_t))
             core::failData(
@@ -72,7 +71,7 @@ void visitStatus(Stream& stream, S& s) {
     for (uint16_t i = 0; i < s.runs.count; ++i) {
         auto& run = s.runs.list[i];
         auto gap = uint16_t(run.first - at), length = uint16_t(run.end - run.first);
-        visitNumbers(stream, gap, length);
+        stream.numbers(gap, length);
         if (gap == 0 || length == 0 || uint64_t(at) + gap + length > 0xFFFFFFFFu)
             core::failData("The packet's status has a run of %u records, %u behind record %u.",
                            uint32_t(length), uint32_t(gap), at);

@@ -87,19 +87,18 @@ void Server::fall(Peer& peer) noexcept {
 
 void Server::endCapture() noexcept {
     capturing_ = captureRequested_ = false;
-    eachPeer([](Peer& peer, uint32_t) {
+    for (auto [slot, peer] : peers_.entries())
         if (peer.phase == PeerPhase::waitsForTiles) peer.capture = 0;
-    });
 }
 
 // Records from this one on may still be needed, or messages alone.
 uint32_t Server::neededFrom(bool messagesAlone) noexcept {
     uint32_t from = log_.end();
-    eachPeer([&](const Peer& peer, uint32_t) {
+    for (auto [slot, peer] : peers_.entries()) {
         if (ruleOf(peer.phase).hasState && (messagesAlone || !peer.skips))
             from = std::min(from, peer.acknowledged);
         if (ruleOf(peer.phase).takes) from = std::min(from, peer.head.record);
-    });
+    }
     for (const Capture& capture : captures_) from = std::min(from, capture.head.record);
     return captureRequested_ ? std::min(from, recorded_.record) : from;
 }
@@ -108,15 +107,14 @@ void Server::dropLog(uint32_t record) noexcept {
     try {
         log_.dropBefore(record, neededFrom(true));
     } catch (...) {
-        eachPeer([](Peer& peer, uint32_t) {
+        for (auto [slot, peer] : peers_.entries())
             if (ruleOf(peer.phase).hasState) ++peer.messagesLost;
-        });
         log_.dropBefore(record, log_.end());  // which needs no memory
     }
 }
 
 void Server::discardAll() noexcept {
-    eachPeer([&](Peer& peer, uint32_t) { fall(peer); });
+    for (auto [slot, peer] : peers_.entries()) fall(peer);
     endCapture();
     captures_.clear();
     dropLog(log_.end());
@@ -153,10 +151,9 @@ void Server::drain(world::World& world) {
         recorded_.id = 2 * captureCount_;
         recorded_.step = record_.step;
         recorded_.record = log_.end();
-        eachPeer([&](Peer& peer, uint32_t) {
+        for (auto [slot, peer] : peers_.entries())
             if (peer.phase == PeerPhase::waitsForTiles && peer.capture == 0)
                 peer.capture = captureCount_;
-        });
     };
     for (size_t i = 0; i < recording_.commands.size(); ++i) {
         if (recording_.captured && i == recording_.capturedBehind) recordCapture();
@@ -214,23 +211,23 @@ void Server::trim(const world::World& world) noexcept {
     uint32_t needed = neededFrom(false);
     if (log_.bytes() > kMaxLog) needed = std::max(needed, log_.recordBeforeLast(kMaxLog / 2));
     dropLog(std::max(needed, log_.begin()));
-    eachPeer([&](Peer& peer, uint32_t) {
-        if (!ruleOf(peer.phase).hasState || peer.skips || peer.acknowledged >= log_.begin()) return;
-        fall(peer);
-        ++peer.resyncs;
-    });
+    for (auto [slot, peer] : peers_.entries())
+        if (ruleOf(peer.phase).hasState && !peer.skips && peer.acknowledged < log_.begin()) {
+            fall(peer);
+            ++peer.resyncs;
+        }
     log_.dropMessagesBefore(neededFrom(true));
     while (log_.keptBytes() > kMaxKept) {
         const uint32_t lost = log_.dropOldestMessage();
-        eachPeer([&](Peer& peer, uint32_t name) {
-            if (!ruleOf(peer.phase).hasState || peer.acknowledged > lost) return;
+        for (auto [slot, peer] : peers_.entries()) {
+            if (!ruleOf(peer.phase).hasState || peer.acknowledged > lost) continue;
             if (peer.messagesLost++ == 0)
                 world.log().write(FW_LOG_WARNING,
                                   "Peer %u has not answered for %.1f s: of messages that wait, the "
                                   "server keeps %zu bytes, and this peer misses the others. Remove "
                                   "it, or send it what it missed in another way.",
-                                  name, peer.link.silent, kMaxKept);
-        });
+                                  slot + 1, peer.link.silent, kMaxKept);
+        }
     }
 }
 
@@ -270,25 +267,24 @@ void Server::watchBacklog(const world::World& world, Peer& peer, uint32_t name) 
 // ---- states -------------------------------------------------------------------------------------
 
 Server::Capture* Server::captureOf(uint32_t number) noexcept {
-    for (Capture& capture : captures_)
-        if (capture.number() == number) return &capture;
-    return nullptr;
-}
-
-void Server::failCapture(const world::World& world, const char* why) noexcept {
-    endCapture();
-    captureFailedAt_ = now_;
-    world.log().write(FW_LOG_WARNING, "Peers wait for the state, which cannot be saved: %s", why);
+    const auto at = std::ranges::find(captures_, number, &Capture::number);
+    return at == captures_.end() ? nullptr : &*at;
 }
 
 template <class Part>
 void Server::tryCapture(const world::World& world, const Part& part) noexcept {
+    const auto fail = [&](const char* why) {
+        endCapture();
+        captureFailedAt_ = now_;
+        world.log().write(FW_LOG_WARNING, "Peers wait for the state, which cannot be saved: %s",
+                          why);
+    };
     try {
         part();
     } catch (const core::Error& error) {
-        failCapture(world, error.message);
+        fail(error.message);
     } catch (const std::bad_alloc&) {
-        failCapture(world, "Memory does not suffice.");
+        fail("Memory does not suffice.");
     }
 }
 
@@ -311,24 +307,20 @@ void Server::fetchCapture(world::World& world) {
 
 // Keeps those that a peer takes, and the newest as long as it may be given away.
 void Server::dropCaptures() noexcept {
-    const auto isUsed = [&](const Capture& capture) {
-        bool used = false;
-        eachPeer([&](const Peer& peer, uint32_t) { used |= peer.capture == capture.number(); });
-        return used;
-    };
     while (captures_.size() > kMaxCaptures) {
         const uint32_t number = captures_.front().number();
-        eachPeer([&](Peer& peer, uint32_t) {
-            if (peer.capture != number) return;
+        for (auto [slot, peer] : peers_.entries()) {
+            if (peer.capture != number) continue;
             peer.capture = 0;
             if (peer.phase != PeerPhase::waitsForTiles) move(peer, PeerEvent::falls);
-        });
+        }
         captures_.erase(captures_.begin());
     }
     const uint32_t newest = captures_.empty() ? 0 : captures_.back().number();
     std::erase_if(captures_, [&](const Capture& capture) {
-        const bool young = capture.number() == newest && now_ - capture.at <= kCaptureAge;
-        return !young && !isUsed(capture);
+        bool kept = capture.number() == newest && now_ - capture.at <= kCaptureAge;
+        for (auto [slot, peer] : peers_.entries()) kept |= peer.capture == capture.number();
+        return !kept;
     });
 }
 
@@ -337,30 +329,29 @@ void Server::collectCaptures(world::World& world) {
     fetchCapture(world);
     dropCaptures();
     bool needed = false;
-    eachPeer([&](Peer& peer, uint32_t) {
-        if (!ruleOf(peer.phase).waits || peer.capture != 0) return;
-        if (peer.phase != PeerPhase::waitsForTiles)
-            for (size_t i = captures_.size(); i-- > 0;) {
-                const Capture& capture = captures_[i];
-                const uint32_t least = peer.skips ? peer.sentEnd : peer.requestedAt;
-                if (peer.loaded == 0 ? now_ - capture.at > kCaptureAge
-                                     : capture.head.record < least)
-                    continue;
-                begin(peer, capture.head, capture.bytes.size());
-                peer.capture = capture.number();
-                return;
-            }
-        needed |= peer.captures >= 1;
-    });
+    for (auto [slot, peer] : peers_.entries()) {
+        if (!ruleOf(peer.phase).waits || peer.capture != 0) continue;
+        const uint32_t least = peer.skips ? peer.sentEnd : peer.requestedAt;
+        const auto fits = [&, &taker = peer](const Capture& capture) {
+            return taker.loaded == 0 ? now_ - capture.at <= kCaptureAge
+                                     : capture.head.record >= least;
+        };
+        const auto newest = std::find_if(captures_.rbegin(), captures_.rend(), fits);
+        if (peer.phase == PeerPhase::waitsForTiles || newest == captures_.rend()) {
+            needed |= peer.captures >= 1;
+            continue;
+        }
+        begin(peer, newest->head, newest->bytes.size());
+        peer.capture = newest->number();
+    }
     if (!needed || capturing_ || now_ - captureFailedAt_ < kCaptureRetry) return;
     tryCapture(world, [&] {
         world.persistence().requestSave(world::SaveFor::net);
         capturing_ = true;
     });
-    eachPeer([&](Peer& peer, uint32_t) {
+    for (auto [slot, peer] : peers_.entries())
         if (ruleOf(peer.phase).waits && peer.capture == 0)
             peer.captures = std::max(peer.captures - 1, 0.0);
-    });
 }
 
 void Server::begin(Peer& peer, const StateHead& head, size_t bytes) {
@@ -401,22 +392,22 @@ void Server::update(world::World& world, float seconds) {
     }
     collectCaptures(world);
     trim(world);
-    eachPeer([&](Peer& peer, uint32_t name) {
+    for (auto [slot, peer] : peers_.entries()) {
         peer.packets = std::min(peer.packets + passed * kPacketsPerSecond, kMaxPackets);
         peer.captures = std::min(peer.captures + passed / kCaptureEvery, kCapturesAtOnce);
-        if (peer.token == 0) return;
+        if (peer.token == 0) continue;
         peer.link.silent += passed;
         peer.budget = std::min(peer.budget + passed * def_.bytesPerSecond, maxBudget());
-        watchBacklog(world, peer, name);
+        watchBacklog(world, peer, slot + 1);
         peer.untilDue -= passed;
-        if (peer.untilDue > 1e-4) return;
+        if (peer.untilDue > 1e-4) continue;
         peer.untilDue = std::max(peer.untilDue + double(def_.interval), 0.0);
         peer.due = true;
         const double spare = std::max(double(def_.interval), peer.trip.seconds() / 4) - 1e-4;
         if (now_ >= peer.resendAt ||
             (peer.cursor >= streamEnd(peer) && hasSpareRate(peer) && now_ - peer.resentAt >= spare))
             peer.cursor = peer.acknowledged;
-    });
+    }
 }
 
 PacketHead Server::headOf(Peer& peer, PacketKind kind) noexcept {
@@ -580,13 +571,6 @@ const Server::Given* Server::givenOf(const Peer& peer, uint32_t id) noexcept {
     return nullptr;
 }
 
-PeerEvent Server::eventOf(uint16_t request) noexcept {
-    constexpr PeerEvent events[] = {PeerEvent::requestsNothing, PeerEvent::requestsState,
-                                    PeerEvent::requestsTiles};
-    FW_ASSERT(request < std::size(events), "request %u", uint32_t(request));
-    return events[request];
-}
-
 // Every number against what the server knows. An older packet may say less than is known by now.
 void Server::checkStatus(const Peer& peer, const Status& status, bool newest) const {
     const auto check = [](const char* name, uint32_t value, uint32_t low, uint32_t high) {
@@ -673,7 +657,7 @@ void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, b
 // It has a save of its own of the tick that the capture is of.
 void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
     uint32_t number = 0, slot = 0;
-    visitNumbers(reader, number, slot);
+    reader.numbers(number, slot);
     std::array<uint32_t, world::kMaxBlocks> hashes{};
     const size_t count = reader.left() / sizeof(uint32_t);
     if (count > hashes.size())
@@ -729,7 +713,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
         state.roundTrip = float(peer.trip.seconds());
         return;
     }
-    eachPeer([&](const Peer& peer, uint32_t) { add(peer); });
+    for (auto [slot, peer] : peers_.entries()) add(peer);
     state.phase = FW_NET_FOLLOWING;
     state.newestKnownStep = state.step;
 }

@@ -78,11 +78,6 @@ class Server {
         [[nodiscard]] uint32_t number() const noexcept { return head.id / 2; }
     };
 
-    template <class Visit>
-    void eachPeer(const Visit& visit) {
-        for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-            if (Peer* peer = peers_.at(i)) visit(*peer, i + 1);
-    }
     void drain(world::World& world);
     void append(const Record& record);  // may throw
     void push(const Record& record);
@@ -96,7 +91,6 @@ class Server {
     void watchBacklog(const world::World& world, Peer& peer, uint32_t name) noexcept;
     [[nodiscard]] Capture* captureOf(uint32_t number) noexcept;
     void endCapture() noexcept;
-    void failCapture(const world::World& world, const char* why) noexcept;
     template <class Part>
     void tryCapture(const world::World& world, const Part& part) noexcept;
     void fetchCapture(world::World& world);
@@ -112,7 +106,6 @@ class Server {
     void readPacket(world::World& world, Peer& peer, uint32_t name,
                     std::span<const std::byte> packet);
     [[nodiscard]] static const Given* givenOf(const Peer& peer, uint32_t id) noexcept;
-    [[nodiscard]] static PeerEvent eventOf(uint16_t request) noexcept;
     void checkStatus(const Peer& peer, const Status& status, bool newest) const;
     void readStatus(world::World& world, Peer& peer, core::Reader& reader, bool newest);
     void readTiles(world::World& world, Peer& peer, core::Reader& reader);

@@ -13,8 +13,8 @@ constexpr double kNeverSent = -1e9;
 // A head's fields, written or read: the order is that of the packet.
 template <class Stream, class Head>
 void eachOf(Stream& stream, Head& head) {
-    visitNumbers(stream, head.state.id, head.state.step, head.state.record, head.state.size,
-                 head.index, head.bytes);
+    stream.numbers(head.state.id, head.state.step, head.state.record, head.state.size, head.index,
+                   head.bytes);
 }
 
 }  // namespace

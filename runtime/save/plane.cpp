@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
+#include <type_traits>
 
 namespace fw::save {
 namespace {
@@ -211,13 +211,12 @@ uint32_t folded(uint32_t difference) noexcept {  // signs to odd and even
 }
 uint32_t unfolded(uint32_t value) noexcept { return (value >> 1) ^ (0u - (value & 1)); }
 
-}  // namespace
-
-void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask,
-                std::pmr::vector<std::byte>& out) {
+// Both ways, like code(). True: some cell has a value.
+template <class Coder, class Value>
+bool codeCells(Coder& coder, std::span<Value> values, uint32_t width, PlaneMask mask) {
     FW_ASSERT(width > 0 && (mask.empty() || mask.size() == values.size()),
               "%zu cells in rows of %u", values.size(), width);
-    Encoder coder(out);
+    constexpr bool kWrites = std::is_const_v<Value>;
     const Neighbours around(values, width, mask);
     std::array<Models, kContexts> models;
     uint32_t last = 0, before = 0, x = 0;
@@ -226,34 +225,30 @@ void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask
         if (!around.has(cell)) continue;
         any = true;
         const Seen seen = around.at(cell, x, last);
-        last = values[cell];
-        const uint32_t missed = folded(last - seen.guess);
-        (void)code(coder, models[seen.context], before, missed);
+        const uint32_t wanted = kWrites ? folded(values[cell] - seen.guess) : 0;
+        const uint32_t missed = code(coder, models[seen.context], before, wanted);
+        last = seen.guess + unfolded(missed);
         before = missed != 0 ? 1 : 0;
+        if constexpr (!kWrites) {
+            values[cell] = last;
+            if (coder.ended()) break;
+        }
     }
-    if (any) coder.finish();
+    return any;
+}
+
+}  // namespace
+
+void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask,
+                std::pmr::vector<std::byte>& out) {
+    Encoder coder(out);
+    if (codeCells(coder, values, width, mask)) coder.finish();
 }
 
 bool readPlane(std::span<const std::byte> bytes, uint32_t width, PlaneMask mask,
                std::span<uint32_t> values) {
-    FW_ASSERT(width > 0 && (mask.empty() || mask.size() == values.size()),
-              "%zu cells in rows of %u", values.size(), width);
-    const Neighbours around(values, width, mask);
-    const auto none = [](uint8_t cell) { return cell == 0; };
-    if (values.empty() || (!mask.empty() && std::all_of(mask.begin(), mask.end(), none)))
-        return bytes.empty();
     Decoder coder(bytes);
-    std::array<Models, kContexts> models;
-    uint32_t last = 0, before = 0, x = 0;
-    for (size_t cell = 0; cell < values.size(); ++cell, x = x + 1 == width ? 0 : x + 1) {
-        if (!around.has(cell)) continue;
-        const Seen seen = around.at(cell, x, last);
-        const uint32_t missed = code(coder, models[seen.context], before, 0);
-        last = values[cell] = seen.guess + unfolded(missed);
-        before = missed != 0 ? 1 : 0;
-        if (coder.ended()) return false;
-    }
-    return coder.all();
+    return codeCells(coder, values, width, mask) ? coder.all() : bytes.empty();
 }
 
 }  // namespace fw::save

@@ -109,10 +109,7 @@ struct Transform {  // an affine matrix without its last row, in columns
         all[15] = 1;
         return all;
     }
-    template <class A>
-    void serialize(A& a) {
-        a(columns);
-    }
+    FW_SERIALIZE(columns)
 };
 
 struct SlotTransform {
@@ -141,10 +138,11 @@ struct MoveFire {
     FW_SERIALIZE(slot, position)
 };
 
-struct MoveEmitter {
+template <size_t kNumbers>
+struct MoveAndTurn {
     uint32_t slot = 0;
     bool turns = false;  // else it keeps its direction
-    float position[3] = {}, direction[3] = {};
+    float position[3] = {}, direction[kNumbers] = {};
 
     template <class A>
     void serialize(A& a) {
@@ -152,18 +150,8 @@ struct MoveEmitter {
         if (turns) a(direction);
     }
 };
-
-struct MoveField {
-    uint32_t slot = 0;
-    bool turns = false;  // else it keeps its rotation
-    float position[3] = {}, rotation[4] = {};
-
-    template <class A>
-    void serialize(A& a) {
-        a(slot, turns, position);
-        if (turns) a(rotation);
-    }
-};
+using MoveEmitter = MoveAndTurn<3>;
+using MoveField = MoveAndTurn<4>;  // direction: a quaternion
 
 struct SetWindZone {
     uint32_t slot = 0;

@@ -164,7 +164,8 @@ class ExchangeSystem {
     ExchangeSystem(const WorldContext& context, Scene& scene, const WindSystem& wind);
 
     void setFlags(uint32_t given);
-    void setHeatOcclusion(const FwHeatOcclusionDef& def);  // of structSize 0: removes it
+    // Of structSize 0: removes it. unitsPerMetre: of the def's function.
+    void setHeatOcclusion(const FwHeatOcclusionDef& def, float unitsPerMetre = 1);
     FwHeatOccluderId addHeatOccluder(const FwHeatOccluderDef& def);
     void moveHeatOccluder(FwHeatOccluderId id, const float transform[16]);
     void removeHeatOccluder(FwHeatOccluderId id);

@@ -69,7 +69,7 @@ void FieldSystem::move(FwParticleFieldId id, const float position[3], const floa
     if (!wets) return;
     MoveField command{id.index1 - 1, rotation != nullptr};
     std::copy_n(position, 3, command.position);
-    if (rotation) std::copy_n(rotation, 4, command.rotation);
+    if (rotation) std::copy_n(rotation, 4, command.direction);
     context_.recorder.record(command);
 }
 
@@ -89,14 +89,14 @@ void FieldSystem::setHidden(FwParticleFieldId id, bool hidden) {
 void FieldSystem::paint(FwParticleFieldId id, const uint8_t* paint, const uint8_t* walls) {
     components::ParticleField& field = fields_.get(id)->data;
     components::ParticleField before(context_.memory);
-    before.paint = field.paint, before.walls = field.walls, before.masks = field.masks;
+    before.painted = field.painted, before.walled = field.walled, before.masks = field.masks;
     components::paintField(field, paint, walls);
     try {
         context_.backend.setFieldMasks(id.index1 - 1, field.masks);
         if (auto& cells = fields_.get(id)->cells) field::maskField(*cells, field.masks);
     } catch (...) {
-        field.paint.swap(before.paint);
-        field.walls.swap(before.walls);
+        field.painted.swap(before.painted);
+        field.walled.swap(before.walled);
         field.masks.swap(before.masks);
         throw;
     }

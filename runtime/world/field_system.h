@@ -65,7 +65,7 @@ class FieldSystem {
 
     void apply(const MoveField& command) {
         move(fields_.findId(command.slot), command.position,
-             command.turns ? command.rotation : nullptr);
+             command.turns ? command.direction : nullptr);
     }
     void apply(const SetFieldAmount& command) {
         setAmount(fields_.findId(command.slot), command.value);

@@ -118,10 +118,9 @@ void QuerySystem::copyStates(std::pmr::vector<StateCopy>& to) {
         else
             one.state.frameIndex = context_.readbackFrame;
     }
-    for (const Object* object : scene_.touched)
-        if (!to[object->slot].touched) copy(object->slot, *object);
-    for (const Object* object : scene_.playing)
-        if (!to[object->slot].touched) copy(object->slot, *object);
+    for (const auto* changing : {&scene_.touched, &scene_.playing})
+        for (const Object* object : *changing)
+            if (!to[object->slot].touched) copy(object->slot, *object);
 }
 
 void QuerySystem::energyLedger(FwEnergyLedger& ledger) noexcept {
@@ -196,21 +195,11 @@ FwPointState QuerySystem::pointState(const Object& object, uint32_t texel,
         state.charred = 1 - state.fuel;
         return state;
     }
-    switch (code) {
-        case gpu::kNever:
-            state.kind = FW_POINT_UNBURNT;
-            break;
-        case gpu::kWet:
-            state.kind = FW_POINT_WET;
-            break;
-        case gpu::kInert:
-            state.kind = FW_POINT_INERT;
-            state.fuel = 0;
-            break;
-        default:
-            state.kind = FW_POINT_EXTINGUISHED;
-            break;  // kOut, kOutWet
-    }
+    state.kind = code == gpu::kNever   ? FW_POINT_UNBURNT
+                 : code == gpu::kWet   ? FW_POINT_WET
+                 : code == gpu::kInert ? FW_POINT_INERT
+                                       : FW_POINT_EXTINGUISHED;  // kOut, kOutWet
+    if (code == gpu::kInert) state.fuel = 0;
     return state;
 }
 

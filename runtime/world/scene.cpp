@@ -34,18 +34,6 @@ mesh::Box boxAround(const double (&low)[3], const double (&high)[3]) noexcept {
     return box;
 }
 
-bool nearBounds(const float point[3], const mesh::BurnDomain& domain, float reach) {
-    // Squared distance to the bounds, so that far objects cost nothing.
-    float sum = 0;
-    for (int i = 0; i < 3; ++i) {
-        const float below = domain.boundsLow[i] - point[i];
-        const float above = point[i] - domain.boundsHigh[i];
-        const float outside = std::max(0.0f, std::max(below, above));
-        sum += outside * outside;
-    }
-    return sum <= reach * reach;
-}
-
 }  // namespace
 
 Scene::Scene(const WorldContext& context)
@@ -64,10 +52,8 @@ Scene::Scene(const WorldContext& context)
 
 Scene::~Scene() {
     // The backend still holds what the ids stand for; it goes in the order objects, meshes, images.
-    for (uint32_t i = 0; i < objects.slotCount(); ++i)
-        if (objects.at(i)) context_.backend.destroyObject(i);
-    for (uint32_t i = 0; i < meshes.slotCount(); ++i)
-        if (meshes.at(i)) context_.backend.destroyMesh(i);
+    for (auto [i, object] : objects.entries()) context_.backend.destroyObject(i);
+    for (auto [i, mesh] : meshes.entries()) context_.backend.destroyMesh(i);
     for (auto [i, image] : images.entries()) context_.backend.destroyImage(image.slot);
 }
 
@@ -155,9 +141,9 @@ uint32_t Scene::shapedSlot(uint32_t slot, const float shape[3]) {
     if (shape[0] == 1 && shape[1] == 1 && shape[2] == 1) return slot;
     for (auto [i, entry] : meshes.entries()) {
         if (entry.parentPlus1 != slot + 1) continue;
-        float most = 0;
-        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(entry.shape[k] / shape[k] - 1));
-        if (most <= 1e-4f) return i;
+        if (std::equal(shape, shape + 3, entry.shape,
+                       [](float a, float b) { return std::abs(b / a - 1) <= 1e-4f; }))
+            return i;
     }
     MeshEntry entry = makeEntry(core::Owned<mesh::BurnDomain>::make(
         context_.memory, mesh::shaped(*meshes.at(slot)->domain, shape, context_.memory)));
@@ -243,14 +229,13 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     if (extended) options = context_.backend.extendedRefineOptions(def.refineDepth);
     options.depth = def.refineDepth;
     float wall = 0;
-    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-        if (components::burns(object, i)) wall = std::max(wall, object.materials[i].thickness);
-    if (wall > 0) options.wall = std::clamp(wall, 1e-4f, 0.5f);
     std::array<mesh::RefineHoles, gpu::kMaterialsPerObject> holes;
-    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-        if (components::burns(object, i))
-            holes[i] =
-                components::holesOf(components::materialLook(object.materials[i].appearance));
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
+        if (!components::burns(object, i)) continue;
+        wall = std::max(wall, object.materials[i].thickness);
+        holes[i] = components::holesOf(components::materialLook(object.materials[i].appearance));
+    }
+    if (wall > 0) options.wall = std::clamp(wall, 1e-4f, 0.5f);
     const mesh::RefineModel model = mesh::bakeRefine(*mesh.domain, options, context_.memory);
     context_.backend.createRefinement(slot, def.refineDepth, extended, *mesh.domain, model, holes);
     mesh.refinements |= bit;
@@ -381,8 +366,12 @@ bool Scene::canBurn(const Object& object, uint32_t texel) const noexcept {
 }
 
 uint32_t Scene::nearTexel(const Object& object, const float point[3], float reach) const noexcept {
-    if (!object.skinMoved && !nearBounds(point, domainOf(object), reach)) return mesh::kNone;
-    return nearestTexel(object, point, reach);
+    const mesh::BurnDomain& domain = domainOf(object);
+    float inside[3];
+    for (int i = 0; i < 3; ++i)
+        inside[i] = std::clamp(point[i], domain.boundsLow[i], domain.boundsHigh[i]);
+    const bool isFar = squaredDistance(inside, point) > reach * reach;
+    return isFar && !object.skinMoved ? mesh::kNone : nearestTexel(object, point, reach);
 }
 
 const mesh::BurnDomain& Scene::domainOf(const Object& object) const noexcept {

@@ -50,7 +50,7 @@ void ExchangeSystem::bakeHeatOcclusion(const components::OcclusionGridShape& sha
     components::bakeOcclusion(shape, objects, baked);
 }
 
-void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def) {
+void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def, float unitsPerMetre) {
     context_.recorder.mayChange();
     components::HeatOcclusion made(context_.memory);
     std::pmr::vector<uint32_t> slots(context_.memory);
@@ -65,7 +65,7 @@ void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def) {
             const std::span<const uint32_t> near = scene_.objectsNear(boxOf(made.shape), 0);
             slots.insert(slots.end(), near.begin(), near.end());
         }
-        components::readOcclusionCells(def, made.shape, made.solid);
+        components::readOcclusionCells(def, made.shape, unitsPerMetre, made.solid);
     }
     bakeHeatOcclusion(made.shape, slots, made.baked);
     uploadOcclusion(made, slots);

@@ -1,5 +1,4 @@
 // Particles on a device move as the library's code says, and their quads are drawn in order.
-#include "components/view_params.h"
 #include "gpu/passes/blend_order.h"
 #include "gpu/passes/draw.h"
 #include "shared/flipbook.h"
@@ -51,8 +50,7 @@ class ParticlePass : public GpuTest {
         input.view = &view_;
         input.viewport[2] = input.viewport[3] = 512;
         input.flameCapacity = kTiles;
-        gpu::ViewParams params{};
-        testLooks().viewParams(input, params);
+        const gpu::ViewParams params = gpu::makeViewParams(input);
         rig_->make(FW_BIND_VIEW, sizeof params, &params);
         particles_ = rig_->add(byTexels ? "particles_texels.comp" : "particles.comp");
         quads_ = rig_->add(byTexels ? "particle_quads_texels.comp" : "particle_quads.comp");
@@ -609,8 +607,7 @@ class SparkPass : public GpuTest {
         gpu::ViewInput input;
         input.view = &view;
         input.viewport[2] = input.viewport[3] = 512;
-        gpu::ViewParams params{};
-        testLooks().viewParams(input, params);
+        const gpu::ViewParams params = gpu::makeViewParams(input);
         rig_->make(FW_BIND_VIEW, sizeof params, &params);
         pass_ = rig_->add("sparks.comp");
         byTexels_ = rig_->add("sparks_texels.comp");

@@ -297,8 +297,7 @@ class Volume : public GpuTest {
         gpu::ViewInput input;
         input.view = &rig_->view;
         input.viewport[2] = input.viewport[3] = kSide;
-        gpu::ViewParams view{};
-        testLooks().viewParams(input, view);
+        const gpu::ViewParams view = gpu::makeViewParams(input);
         gpu::VolumeDraw draw{};
         std::vector<vec4> picture(kSide * kSide, vec4(0.0f));
         if (!lod::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
@@ -407,8 +406,7 @@ class Volume : public GpuTest {
         gpu::ViewInput input;
         input.view = &rig_->view;
         input.viewport[2] = input.viewport[3] = kSide;
-        gpu::ViewParams view{};
-        testLooks().viewParams(input, view);
+        const gpu::ViewParams view = gpu::makeViewParams(input);
         vec4 low, high;
         lod::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
         low.w = flame.record.low.w;
@@ -443,8 +441,7 @@ class Volume : public GpuTest {
         gpu::ViewInput input;
         input.view = &rig_->view;
         input.viewport[2] = input.viewport[3] = kSide;
-        gpu::ViewParams view{};
-        testLooks().viewParams(input, view);
+        const gpu::ViewParams view = gpu::makeViewParams(input);
         gpu::VolumeDraw draw{};
         vec4 low, high;
         lod::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
@@ -2115,8 +2112,7 @@ TEST(VolumeDraw, IsDrawnOnlyWhereItIsInFrontOfTheCamera) {
     gpu::ViewInput input;
     input.view = &camera;
     input.viewport[2] = input.viewport[3] = 100;
-    gpu::ViewParams view{};
-    testLooks().viewParams(input, view);
+    const gpu::ViewParams view = gpu::makeViewParams(input);
     const vec4 low(1, -0.5f, -10, 0.5f), high(2, 0.3f, 3, 1);
     gpu::VolumeDraw draw{};
     vec4 whole(1.0f);

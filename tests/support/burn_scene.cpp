@@ -3,7 +3,6 @@
 #include "components/appearance_table.h"
 #include "components/appearance_textures.h"
 #include "components/fire_flames.h"
-#include "components/view_params.h"
 #include "fire/heat.h"
 #include "fire/presets.h"
 
@@ -317,17 +316,6 @@ gpu::LookSources testLooks() {
     static const std::pmr::vector<std::byte> profiles =
         components::bakeFireProfiles(std::pmr::get_default_resource());
     looks.profiles = profiles;
-    looks.viewParams = [](const gpu::ViewInput& input, gpu::ViewParams& out) {
-        components::ViewInputs inputs;
-        std::copy_n(input.viewport, 4, inputs.viewport);
-        inputs.now = input.now;
-        inputs.lightCount = input.lightCount;
-        inputs.lastLight = input.lastLight;
-        inputs.flameCapacity = input.flameCapacity;
-        inputs.seed = input.seed;
-        inputs.paceFactor = input.paceFactor;
-        out = components::makeViewParams(*input.view, inputs);
-    };
     return looks;
 }
 

@@ -2,7 +2,6 @@
 // pictures.
 #include "components/appearance_table.h"
 #include "components/appearance_textures.h"
-#include "components/view_params.h"
 #include "gpu/passes/draw.h"
 
 #include <gtest/gtest.h>
@@ -40,8 +39,8 @@ TEST(LookTable, EveryPresetIsComplete) {
 }
 
 TEST(LookTable, OutOfRangePresetsDoNotBurn) {
-    EXPECT_EQ(lookSpreadRate(kLookCount), 0.0f);
-    EXPECT_EQ(lookSpreadRate(0xFFFFFFFFu), 0.0f);
+    EXPECT_EQ(materialLook(kLookCount).spreadRate, 0.0f);
+    EXPECT_EQ(materialLook(0xFFFFFFFFu).spreadRate, 0.0f);
     EXPECT_EQ(materialLook(kLookCount).base, gpu::kBaseStone);
 }
 
@@ -124,11 +123,12 @@ TEST(ViewParamsTest, ProjectsPointsLikeTheHost) {
     projection[3][2] = 0.1f;  // infinite, reversed
     std::memcpy(view.view, glm::value_ptr(look), sizeof view.view);
     std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
-    ViewInputs inputs;
-    inputs.viewport[2] = 1280;
-    inputs.viewport[3] = 720;
-    inputs.flameCapacity = 1u << 30;
-    const gpu::ViewParams p = makeViewParams(view, inputs);
+    gpu::ViewInput input;
+    input.view = &view;
+    input.viewport[2] = 1280;
+    input.viewport[3] = 720;
+    input.flameCapacity = 1u << 30;
+    const gpu::ViewParams p = gpu::makeViewParams(input);
     EXPECT_NEAR(p.eye.x, eye.x, 1e-3);
     EXPECT_NEAR(p.eye.z, eye.z, 1e-3);
     EXPECT_NEAR(p.eye.w, 2.0 / (2.0 * 720), 1e-7);
@@ -149,7 +149,9 @@ TEST(ViewParamsTest, AcceptsViewsAlongPlusZ) {
     projection[0][0] = projection[1][1] = projection[2][2] = projection[2][3] = 1.0f;
     std::memcpy(view.view, glm::value_ptr(look), sizeof view.view);
     std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
-    const gpu::ViewParams p = makeViewParams(view, {});
+    gpu::ViewInput input;
+    input.view = &view;
+    const gpu::ViewParams p = gpu::makeViewParams(input);
     EXPECT_NEAR(p.forward.z, 1.0f, 1e-6);
 }
 

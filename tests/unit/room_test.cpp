@@ -52,7 +52,7 @@ TEST(Room, IsAnOrientedBox) {
     def.rotation[1] = std::sin(0.3927f), def.rotation[3] = std::cos(0.3927f);  // an eighth
     EXPECT_TRUE(holds(def, 12, 0, 2));
     EXPECT_FALSE(holds(def, 12, 0, -2));
-    EXPECT_TRUE(components::plausible(components::makeRoom(def)));
+    EXPECT_TRUE(components::makeRoom(def).plausible());
 }
 
 // 13.1 MJ consume a kilogram of oxygen, 0.752 m^3.
@@ -300,7 +300,7 @@ TEST(Room, RefusesBadDefsByName) {
     EXPECT_NE(std::string::npos, message(def).find("FwRoomDef::rotation has length 1.41421;"));
     components::Room room = components::makeRoom(roomDef(1));
     room.volume = 0;
-    EXPECT_FALSE(components::plausible(room));
+    EXPECT_FALSE(room.plausible());
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ TEST(WindZone, SumsStayWithinLimits) {
                     most.falloff = 1e-6f;
                     most.position[0] = at;
                     const WindZone zone = makeWindZone(most);
-                    EXPECT_TRUE(components::plausible(zone));
+                    EXPECT_TRUE(zone.plausible());
                     for (const float x : {at, at + 1, -at})
                         for (const int32_t v : blows({zone}, x, size / 2, -size / 3))
                             EXPECT_LE(std::abs(v), 10 * 128 + 1);

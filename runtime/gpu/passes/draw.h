@@ -20,7 +20,7 @@ namespace fw::gpu {
 
 using namespace lod;
 
-struct ViewInput {
+struct ViewInput {  // of ViewParams
     const FwView* view = nullptr;
     float viewport[4] = {};  // px: x, y, width, height
     uint32_t now = 0;        // tick of the state that is shown
@@ -32,6 +32,8 @@ struct ViewInput {
     float lastLight = 1;  // share of its own fires that the last light shines for
     float quadShare = 1;  // of flames' quads and particles that show
 };
+// The host's view as the uniform block that shaders read.
+[[nodiscard]] ViewParams makeViewParams(const ViewInput& input) noexcept;
 
 // Given by the layer above, which knows how things look.
 constexpr uint32_t kLookTextureLayers = 3;
@@ -41,7 +43,6 @@ struct LookSources {
     std::span<const std::byte> textures;
     // R16G16_SFLOAT, kProfileWidth x kProfileHeight, kFirePresets layers. Copied.
     std::span<const std::byte> profiles;
-    void (*viewParams)(const ViewInput& input, ViewParams& out) = nullptr;
 };
 
 // One material of one object as `surface` draws it. Ranges are in the shared vertex and index

@@ -351,7 +351,7 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
     const bool looked = !from.empty(), emits = s.particles.shows(), burns = !s.simulation.burnEmpty;
     const bool fieldsShow = looked && !s.particleFields.fieldDraws.empty(),
                marches = looked && !s.flames.volumes.empty();
-    if ((!burns && !marches && !emits && !fieldsShow) || !s.limits.looks.viewParams) return;
+    if ((!burns && !marches && !emits && !fieldsShow) || !s.scene.lookTextures.live) return;
     const VkViewport whole{0, 0, 1, 1, 0, 1};
     RecordTarget target = s.recordTarget(slot, s.open.commands);
     target.profiles = s.scene.profiles.set.set;

@@ -150,7 +150,7 @@ void choosePasses(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
     addSeenNeeds(s, needs);
     needs.predicting =
         !s.simulation.predictEmpty || (needs.exchanges && needs.burning) || wakes || needs.appears;
-    needs.falling = anyStep && s.limits.looks.viewParams &&
+    needs.falling = anyStep && s.scene.lookTextures.live &&
                     (needs.burning || plan.endTick < s.simulation.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
                      needs.extensionRuns || needs.airs || !plan.probes.empty() ||

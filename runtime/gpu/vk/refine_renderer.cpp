@@ -324,7 +324,7 @@ void RefineRenderer::record(BackendState& s, FrameInFlight& slot) {
 }
 
 void RefineRenderer::takeEyes(const BackendState& s) noexcept {
-    if (!s.limits.looks.viewParams) return;
+    if (!s.scene.lookTextures.live) return;
     eyeCount = 0;
     pixels = 0;
     for (const OutsideView* const of : s.seenFrom()) {

@@ -70,7 +70,7 @@ bool seenLately(const ObjectEntry& object, uint64_t frame) noexcept {
 }  // namespace
 
 void markVisible(BackendState& s, const FwView& view, float height, uint64_t frame) noexcept {
-    if (!s.limits.looks.viewParams) return;
+    if (!s.scene.lookTextures.live) return;
     const ViewParams params = s.paramsOf(view, height, kAnyHeight);
     const auto lookAt = [&](ObjectEntry& object) {
         if (!object.live || object.seenFrame == frame) return;

@@ -197,11 +197,9 @@ uint32_t BackendState::pushView(FrameInFlight& slot, const FwView& view,
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
     input.quadShare = particles.quadShare;
     input.seed = limits.seed;
-    ViewParams params{};
-    if (limits.looks.viewParams) limits.looks.viewParams(input, params);
-    seen = params;
+    seen = makeViewParams(input);
     const uint32_t offset = (ring.indexOf(slot) * FrameRing::kMaxViews + slot.views) * viewStride;
-    std::memcpy(views.mapped + offset, &params, sizeof params);
+    std::memcpy(views.mapped + offset, &seen, sizeof seen);
     ++slot.views;
     return offset;
 }
@@ -211,9 +209,7 @@ ViewParams BackendState::paramsOf(const FwView& view, float height,
     ViewInput input;
     input.view = &view;
     input.viewport[2] = input.viewport[3] = height > 0 ? height : otherwise;
-    ViewParams params{};
-    limits.looks.viewParams(input, params);
-    return params;
+    return makeViewParams(input);
 }
 
 // --- VkBackend ---
