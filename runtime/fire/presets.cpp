@@ -4,17 +4,33 @@
 // rest are starting points. Rates are as measured, so moisture is 0 except for green leaves.
 #include "fire/presets.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace fw::fire {
 namespace {
 
+// Columns of the tables.
+constexpr float FwMaterialDef::*kBurning[] = {
+    &FwMaterialDef::spreadRate,         &FwMaterialDef::windGain,  &FwMaterialDef::upGain,
+    &FwMaterialDef::headGain,           &FwMaterialDef::backGain,  &FwMaterialDef::driveMax,
+    &FwMaterialDef::lengthToBreadth,    &FwMaterialDef::burnTime,  &FwMaterialDef::moisture,
+    &FwMaterialDef::extinctionMoisture, &FwMaterialDef::thickness, &FwMaterialDef::heatOfCombustion,
+    &FwMaterialDef::burningFlux};
+constexpr float FwMaterialDef::*kSurface[] = {&FwMaterialDef::baseRoughness, &FwMaterialDef::recede,
+                                              &FwMaterialDef::shrink, &FwMaterialDef::curl};
+constexpr float FwMaterialDef::*kWarming[] = {&FwMaterialDef::density,
+                                              &FwMaterialDef::specificHeat,
+                                              &FwMaterialDef::conductivity,
+                                              &FwMaterialDef::ignitionTemperature,
+                                              &FwMaterialDef::autoIgnitionTemperature,
+                                              &FwMaterialDef::waterHeld,
+                                              &FwMaterialDef::radiantFraction,
+                                              &FwMaterialDef::sootYield};
+
 struct Preset {
     const char* name;
-    float spreadRate, windGain, upGain, headGain, backGain, driveMax, lengthToBreadth;
-    float burnTime, moisture, extinctionMoisture, thickness, heatOfCombustion, burningFlux;
-    float baseColor[3], baseRoughness, recede, shrink, curl;
-};
-struct HeatPreset {
-    float density, specificHeat, conductivity, ignition, autoIgnition, water, radiant, soot;
+    float burning[std::size(kBurning)], baseColor[3], surface[std::size(kSurface)];
 };
 
 // clang-format off
@@ -38,7 +54,7 @@ constexpr Preset kPresets[FW_MATERIAL_PRESET_COUNT] = {
 
 // Wood: EN 1995-1-2 and Babrauskas (2001), piloted at 300 to 365 C. Paper's auto-ignition is of a
 // sheet in the open, not the 233 C of an oven.
-constexpr HeatPreset kHeat[FW_MATERIAL_PRESET_COUNT] = {
+constexpr float kHeat[FW_MATERIAL_PRESET_COUNT][std::size(kWarming)] = {
     //                  kg/m^3  J/kgK    W/mK   Tig     Tauto   g/m^2   rad    soot
     /* noncombustible*/ {2300.0f, 880.0f, 1.0f, 2000.0f, 3000.0f, 150.0f, 0.0f, 0.0f},
     /* pine          */ {450.0f, 2500.0f, 0.12f, 623.0f, 873.0f, 200.0f, 0.30f, 0.015f},
@@ -65,36 +81,16 @@ FwMaterialDef presetDef(uint32_t preset) noexcept {
     FwMaterialDef def{};
     def.structSize = uint32_t(sizeof def);
     def.appearance = row;
-    def.spreadRate = p.spreadRate;
-    def.windGain = p.windGain;
-    def.upGain = p.upGain;
-    def.headGain = p.headGain;
-    def.backGain = p.backGain;
-    def.driveMax = p.driveMax;
-    def.lengthToBreadth = p.lengthToBreadth;
+    const auto fill = [&](const auto& columns, const float* values) {
+        for (const auto column : columns) def.*column = *values++;
+    };
+    fill(kBurning, p.burning);
+    fill(kSurface, p.surface);
+    fill(kWarming, kHeat[row]);
+    std::copy_n(p.baseColor, 3, def.baseColor);
     def.ceilingGain = 0.3f;
-    def.burnTime = p.burnTime;
-    def.moisture = p.moisture;
-    def.extinctionMoisture = p.extinctionMoisture;
-    def.thickness = p.thickness;
-    def.heatOfCombustion = p.heatOfCombustion;
-    def.burningFlux = p.burningFlux;
-    for (int i = 0; i < 3; ++i) def.baseColor[i] = p.baseColor[i];
-    def.baseRoughness = p.baseRoughness;
-    const HeatPreset& heat = kHeat[row];
-    def.density = heat.density;
-    def.specificHeat = heat.specificHeat;
-    def.conductivity = heat.conductivity;
-    def.ignitionTemperature = heat.ignition;
-    def.autoIgnitionTemperature = heat.autoIgnition;
     def.flameFeedback = 25000;
     def.charFloor = 0.38f;
-    def.waterHeld = heat.water;
-    def.radiantFraction = heat.radiant;
-    def.sootYield = heat.soot;
-    def.recede = p.recede;
-    def.shrink = p.shrink;
-    def.curl = p.curl;
     return def;
 }
 

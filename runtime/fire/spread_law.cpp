@@ -98,24 +98,21 @@ void checkMaterial(const FwMaterialDef& def) {
     for (const Limit& limit : kLimits) {
         const float value = def.*limit.value;
         if (!(value >= limit.low && value <= limit.high))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwMaterialDef::%s is %g; it must be within [%g, %g].", limit.field,
-                       double(value), double(limit.low), double(limit.high));
+            core::refuse("FwMaterialDef::%s is %g; it must be within [%g, %g].", limit.field,
+                         double(value), double(limit.low), double(limit.high));
     }
     for (int i = 0; i < 3; ++i)
         if (!(def.baseColor[i] >= 0 && def.baseColor[i] <= 1))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwMaterialDef::baseColor[%d] is %g; it must be within [0, 1].", i,
-                       double(def.baseColor[i]));
+            core::refuse("FwMaterialDef::baseColor[%d] is %g; it must be within [0, 1].", i,
+                         double(def.baseColor[i]));
     if (def.autoIgnitionTemperature < def.ignitionTemperature)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMaterialDef::autoIgnitionTemperature is %g; it is at least "
-                   "ignitionTemperature, which is %g.",
-                   double(def.autoIgnitionTemperature), double(def.ignitionTemperature));
+        core::refuse(
+            "FwMaterialDef::autoIgnitionTemperature is %g; it is at least "
+            "ignitionTemperature, which is %g.",
+            double(def.autoIgnitionTemperature), double(def.ignitionTemperature));
     if (def.appearance >= FW_MATERIAL_PRESET_COUNT)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMaterialDef::appearance is %u; it must be a FwMaterialPreset, below %d.",
-                   def.appearance, int(FW_MATERIAL_PRESET_COUNT));
+        core::refuse("FwMaterialDef::appearance is %u; it must be a FwMaterialPreset, below %d.",
+                     def.appearance, int(FW_MATERIAL_PRESET_COUNT));
 }
 
 float moistureFactor(float moisture, float extinctionMoisture) noexcept {

@@ -12,9 +12,6 @@
 
 namespace fw::flipbook {
 
-using gpu::vec2;
-using gpu::vec4;
-
 constexpr uint32_t kMinSide = 8, kMaxSide = limits::kFlipbookSide,
                    kMaxFrames = limits::kFlipbookFrames;
 
@@ -59,11 +56,5 @@ void readFlipbook(std::span<const std::byte> bytes, Flipbook& book);
 
 // Whether no texel absorbs light: particles then add to the background in any order.
 bool emitsAlone(const Flipbook& book) noexcept;
-
-// Bilinear like a sampler, zero beyond the borders.
-vec4 frameAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept;
-vec2 motionAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept;  // uv per frame
-// A texel between two frames (shared/flipbook.h). time: see flipbookPlaceAt.
-vec4 sampleFlipbook(const Flipbook& book, float time, vec2 uv) noexcept;
 
 }  // namespace fw::flipbook

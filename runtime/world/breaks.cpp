@@ -203,14 +203,11 @@ void BurnSystem::onBurnMap(Object& object, const gpu::BurnMap& map,
 void BurnSystem::restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
                                uint32_t now) noexcept {
     Breaks& breaks = *object.breaks;
-    breaks.lookCount = 0;
-    breaks.shareReported = breaks.waits = false;
     if (saved && saved->share == breaks.share && saved->area == breaks.area) {
         static_cast<BreakState&>(breaks) = *saved;
         std::copy(store.lost.begin(), store.lost.end(), breaks.lost.begin());
         return;
     }
-    std::fill(breaks.lost.begin(), breaks.lost.end(), false);
     findBreaks(object, store.ticks, store.heat, now, nullptr);
 }
 

@@ -83,24 +83,18 @@ void BurnSystem::commitStimuli(const HostFrame& frame) noexcept {
 
 // With the readback of a frame, before anything else of it.
 void BurnSystem::onFrameDone(uint64_t frameIndex) noexcept {
-    size_t frames = 0;
-    for (const InFlightFrame& note : state_.frameNotes) {
-        if (note.frameIndex > frameIndex) break;
-        ++frames;
+    std::erase_if(state_.frameNotes, [&](const InFlightFrame& note) {
+        if (note.frameIndex > frameIndex) return false;
         rooms_.onFrameDone(note.roomsStirred);
         if (!state_.seenIdle || note.stirs || note.never ||
             !rooms_.isSettled(rooms_.state().seenStirred))
             state_.steps += note.steps;
-        if (!note.stirs) continue;
-        state_.seenIdle = false;
-        state_.seenStimulus = note.end;
-    }
-    state_.frameNotes.erase(state_.frameNotes.begin(),
-                            state_.frameNotes.begin() + std::ptrdiff_t(frames));
-    size_t taken = 0;
-    for (const Stimulus& one : state_.stimuli) {
-        if (one.frameIndex > frameIndex) break;
-        ++taken;
+        state_.seenIdle &= !note.stirs;
+        if (note.stirs) state_.seenStimulus = note.end;
+        return true;
+    });
+    std::erase_if(state_.stimuli, [&](const Stimulus& one) {
+        if (one.frameIndex > frameIndex) return false;
         Object& object = scene_.objectAt(one.slot);
         BurnLifecycle& lifecycle = object.lifecycle;
         FW_ASSERT(object.stimuli > 0, "burnable mesh %u", object.id.index1);
@@ -121,8 +115,8 @@ void BurnSystem::onFrameDone(uint64_t frameIndex) noexcept {
             lifecycle.lastDouse = one.douse;
             lifecycle.douseCause = one.douseCause;
         }
-    }
-    state_.stimuli.erase(state_.stimuli.begin(), state_.stimuli.begin() + std::ptrdiff_t(taken));
+        return true;
+    });
 }
 
 void BurnSystem::onReadback(const gpu::Readback& readback) noexcept {
@@ -157,18 +151,16 @@ void BurnSystem::applyCounters(const gpu::Readback& readback) noexcept {
         const uint32_t slot = object.slot;
         if (slot >= readback.objects.size() || object.firstFrame > readback.frameIndex) continue;
         const gpu::ObjectCounters& now = readback.objects[slot];
+        object.countersFrame = readback.frameIndex;
+        clamps += now.lateClamps;
         if (waitsForFire(object, now)) {
-            object.countersFrame = readback.frameIndex;
             if (components::hasHeat(object.data))
                 object.lifecycle.heatSteps = heatStepsBefore(readback.endTick);
-            clamps += now.lateClamps;
             continue;
         }
         const gpu::ObjectCounters before = object.counters;
         object.counters = now;
-        object.countersFrame = readback.frameIndex;
         object.lifecycle.maxIgnited = std::max(object.lifecycle.maxIgnited, now.ignited);
-        clamps += now.lateClamps;
         if (object.play.began != 0 && readback.endTick >= object.play.began &&
             !gpu::isPlayingBack(now.playsUntil, readback.endTick))
             endPlay(object, readback.frameIndex, now.playsUntil);  // others' fire came
@@ -276,11 +268,7 @@ void BurnSystem::applyEnergy(Object& object, uint32_t endTick) noexcept {
 
 // ---- saves ------------------------------------------------------------------------------------
 
-void BurnSystem::capture(BurnSnapshot& to) const {
-    to.droppedSteps = state_.droppedSteps;
-    to.order = state_.order;
-    to.pending = state_.pending;
-}
+void BurnSystem::capture(BurnSnapshot& to) const { to = state_; }
 
 void BurnSystem::complete(BurnSnapshot& to) const noexcept {
     to.steps = state_.steps;
@@ -290,19 +278,16 @@ void BurnSystem::complete(BurnSnapshot& to) const noexcept {
 }
 
 void BurnSystem::restore(BurnSnapshot& from, uint32_t listed, uint32_t hot) noexcept {
-    state_.steps = from.steps;
-    state_.droppedSteps = from.droppedSteps;
-    state_.order = from.order;
+    static_cast<BurnSnapshot&>(state_) = std::move(from);
     // An awake world would filter the wind from here on, not from its first ignition.
-    state_.idle = state_.seenIdle = from.idle;
-    state_.lastStimulus = state_.seenStimulus = from.lastStimulus;
+    state_.seenIdle = state_.idle;
+    state_.seenStimulus = state_.lastStimulus;
     state_.stimuli.clear();
     state_.frameNotes.clear();
-    state_.counts = state_.loaded = from.counts;
+    state_.loaded = state_.counts;
     state_.counts.run = 0;
-    state_.loaded.front -= std::min(from.counts.front, listed);
-    state_.loaded.hot -= std::min(from.counts.hot, hot);
-    state_.pending.swap(from.pending);
+    state_.loaded.front -= std::min(state_.loaded.front, listed);
+    state_.loaded.hot -= std::min(state_.loaded.hot, hot);
     settlePending();
 }
 

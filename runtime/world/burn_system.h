@@ -23,7 +23,8 @@ struct BurnCounts {  // of tiles, as of the last readback
 
 struct BurnSnapshot {
     explicit BurnSnapshot(std::pmr::memory_resource* memory) : pending(memory) {}
-    uint64_t steps = 0, droppedSteps = 0, order = 0;
+    uint64_t steps = 0, droppedSteps = 0;
+    uint64_t order = 0;         // of the next of `pending`
     bool idle = true;           // nothing burns, and nobody has to hear of who moves
     uint64_t lastStimulus = 0;  // tick
     BurnCounts counts;          // as of the readback
@@ -36,24 +37,19 @@ struct BurnSnapshot {
     }
 };
 
-struct BurnState {
+// As the plan of the next frame finds it. `counts`: as of the last readback.
+struct BurnState : BurnSnapshot {
     explicit BurnState(std::pmr::memory_resource* memory)
-        : burns("Baked burn", memory), pending(memory), stimuli(memory), frameNotes(memory) {}
+        : BurnSnapshot(memory), burns("Baked burn", memory), stimuli(memory), frameNotes(memory) {}
     core::HandlePool<FwBurnId, core::Owned<Burn>> burns;
-    std::pmr::vector<PendingTexel> pending;
-    uint64_t order = 0;         // of the next of `pending`
-    uint64_t carriesUntil = 0;  // tick: until then burns are carried
-    uint64_t wetUntil = 0;      // tick: from then on no FW_WET event waits
-    uint64_t steps = 0, droppedSteps = 0;
-    uint64_t lastStimulus = 0;  // tick
-    bool idle = true;
+    uint64_t carriesUntil = 0;           // tick: until then burns are carried
+    uint64_t wetUntil = 0;               // tick: from then on no FW_WET event waits
     std::pmr::vector<Stimulus> stimuli;  // of frames whose readback is on its way
     std::pmr::vector<InFlightFrame> frameNotes;
     uint64_t planStamp = 0;
     // As of the last readback.
     uint64_t seenStimulus = 0;
     bool seenIdle = true;
-    BurnCounts counts;
     BurnCounts loaded;  // of a save; until the next count
 };
 
@@ -120,6 +116,9 @@ class BurnSystem {
     }
     [[nodiscard]] uint64_t bytes() const noexcept;  // of memory that frames use
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
+    // Piloted ignition under `flux` W/m^2: thick or thin, whichever is sooner.
+    [[nodiscard]] uint64_t ticksToCatch(const Object& object, uint32_t material,
+                                        double flux) const noexcept;
     // Events that wait for their step.
     void reservePending(size_t more);  // throws
     void addPending(PendingTexel event) noexcept;
@@ -133,10 +132,6 @@ class BurnSystem {
     struct Frame {  // scratch of one frame; keeps its room between frames
         explicit Frame(std::pmr::memory_resource* given) : memory(given) {}
         std::pmr::memory_resource* memory;
-        struct Due {
-            PendingTexel event;
-            uint32_t step = 0;
-        };
         struct LatchOf {
             Object* object = nullptr;
             components::Latch latch;
@@ -149,7 +144,7 @@ class BurnSystem {
             uint32_t ended = 0;          // tick at which it went live
         };
         std::pmr::vector<gpu::StepPlan> steps{memory};
-        std::pmr::vector<Due> due{memory};
+        std::pmr::vector<PendingTexel> due{memory};  // by step, object and texel
         std::pmr::vector<gpu::TexelEvent> events{memory};
         std::pmr::vector<gpu::MaterialUpdate> updates{memory};
         std::pmr::vector<LatchOf> latches{
@@ -170,17 +165,18 @@ class BurnSystem {
     void checkCommandTick(uint32_t tick) const;
     void addChange(Object& object, const TexelChange& change, std::span<const uint32_t> texels);
     // step.cpp
-    void listDue(uint64_t end);
     void listLatches() noexcept;
-    gpu::StepPlan planStep(uint32_t step, size_t& nextDue, bool awake);
+    gpu::StepPlan planStep(uint32_t now, size_t& nextDue, bool awake);
     [[nodiscard]] uint32_t substepShift() const noexcept;  // of a frame
     void sortDue();
-    void planGates(std::span<const Frame::Due> due, size_t firstEvent);
+    void planGates(std::span<const PendingTexel> due, size_t firstEvent);
     [[nodiscard]] bool keepsAwake() const noexcept;  // a switch does
     void touchLatched(uint64_t frameIndex) noexcept;
     void stimulateDue(uint64_t frameIndex) noexcept;
     // latch.cpp
-    void addLatch(Object& object, const components::Latch& latch, bool due) noexcept;
+    void addLatch(Object& object, const components::Latch& latch) noexcept;
+    void addFreshLatch(Object& object, uint32_t now) noexcept;
+    void sendRecords(Frame::LatchOf& entry, const components::DriveInput& drive);
     [[nodiscard]] bool needsRecords(const Object& object, uint32_t now) const noexcept;
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     void touchNear(uint32_t now);
@@ -196,8 +192,7 @@ class BurnSystem {
     // carry.cpp
     void waitForTransfers() noexcept;
     void continueBurn(Object& to, const BurnLifecycle& from) noexcept;
-    [[nodiscard]] bool gives(uint32_t slot) const noexcept;  // its burn is about to be carried
-    void settlePending() noexcept;                           // after a load
+    void settlePending() noexcept;  // after a load
     // breaks.cpp
     [[nodiscard]] const mesh::Pieces& piecesOf(const Object& object) noexcept;  // it has breaks
     void planBreaks(uint64_t end) noexcept;
@@ -211,7 +206,7 @@ class BurnSystem {
     void startPlay(Object& object) noexcept;
     void endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept;
     size_t beginPlays(uint64_t end);
-    void planPlays(uint32_t now, std::span<const Frame::Due> due);
+    void planPlays(uint32_t now, std::span<const PendingTexel> due);
     void turnPlay(const Object& object) noexcept;
     void commitPlays(uint64_t frameIndex) noexcept;
 

@@ -80,7 +80,10 @@ void BurnSystem::continueBurn(Object& to, const BurnLifecycle& from) noexcept {
 }
 
 void BurnSystem::checkGone(const Object& object) const {
-    if (gives(object.slot))
+    if (context_.clock.tick < state_.carriesUntil &&
+        std::ranges::any_of(state_.pending, [&](const PendingTexel& event) {
+            return isCarry(event) && carriedFrom(event) == object.slot;
+        }))
         core::refuse(
             "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
             "that.",
@@ -122,14 +125,6 @@ void BurnSystem::waitForTransfers() noexcept {
         waitFor(event.object);
         for (uint32_t k = 0; k < event.gateCount; ++k) waitFor(event.gates[k].object);
     }
-}
-
-bool BurnSystem::gives(uint32_t slot) const noexcept {
-    return context_.clock.tick < state_.carriesUntil &&
-           std::any_of(state_.pending.begin(), state_.pending.end(),
-                       [&](const PendingTexel& event) {
-                           return isCarry(event) && carriedFrom(event) == slot;
-                       });
 }
 
 void BurnSystem::settlePending() noexcept {

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fw::world {
 
@@ -35,7 +36,6 @@ void moveJet(components::JetStream& stream, const double (&by)[3]) noexcept {
     eachRay(stream, [&](components::JetRay& ray) { movePast(ray.hit.place, by); });
 }
 void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double along) noexcept {
-    moveBy(emitter.position, by);
     emitter.def.ground += float(along);
     for (components::JetHit& hit : emitter.hits) moveBy(hit.place, by);
     for (auto* discs : {&emitter.obstacles, &emitter.lastObstacles})
@@ -198,29 +198,25 @@ void EmitterSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept 
     sparks_.clear();
     uint32_t end = 0, particles = 0, lights = 0, sparks = 0;
     bool listed = false;
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
-        FireEmitter* emitter = emitters_.at(i);
-        gpu::ParticleEmitter record;
-        if (emitter && emitter->def.shape == FW_EMITTER_MESH)
-            emitter->share = burningShare(*emitter);
-        if (emitter && components::isSwept(emitter->def)) {
-            if (!listed) flames_.listShapes();
-            listed = true;
-            updateJetObstacles(*emitter, time_ + double(seconds));
+    for (auto [i, emitter] : emitters_.entries()) {
+        // Another object may have the slot of a mesh that is gone.
+        const bool onMesh = emitter.def.shape == FW_EMITTER_MESH;
+        const bool gone = onMesh && !scene_.objects.find(emitter.def.object);
+        if (onMesh) emitter.share = burningShare(emitter);
+        if (components::isSwept(emitter.def)) {
+            if (!std::exchange(listed, true)) flames_.listShapes();
+            updateJetObstacles(emitter, time_ + double(seconds));
         }
-        if (!emitter) continue;
-        const components::EmitterAir air = airOf(*emitter, seconds);
-        const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
+        const components::EmitterAir air = airOf(emitter, seconds);
+        gpu::ParticleEmitter record;
+        const bool shows = components::advanceEmitter(emitter, air, seconds, record);
         const auto eddies = [&](int k) {
             return float(std::fmod(context_.origin.moved[k], gpu::kEddyField));
         };
         record.heat.w = eddies(0), record.stuck.z = eddies(1), record.stuck.w = eddies(2);
         gpu::SparkSource source;
-        // Another object may have the slot of a mesh that is gone.
-        const bool gone =
-            emitter->def.shape == FW_EMITTER_MESH && !scene_.objects.find(emitter->def.object);
-        if (!gone && components::advanceSparks(*emitter, air, seconds, source)) {
-            if (!(emitter->def.flags & FW_EMITTER_NO_COLLISION)) sampleGround(source);
+        if (!gone && components::advanceSparks(emitter, air, seconds, source)) {
+            if (!(emitter.def.flags & FW_EMITTER_NO_COLLISION)) sampleGround(source);
             FW_ASSERT(sparks_.size() < sparks_.capacity(), "%zu sources", sparks_.size());
             sparks_.push_back(source);
             sparks += components::sparkQuads(source);
@@ -326,11 +322,6 @@ void EmitterSystem::apply(const WetPatch& command) {
     for (components::JetPatches* patches : {&emitter.stream->patches, &emitter.stream->before})
         components::wetPatch((*patches)[command.patch], command.grams, command.tick);
     context_.recorder.record(command);
-}
-
-void EmitterSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, emitter] : emitters_.entries())
-        checkMoved(emitter.position, by, "fire emitter", i);
 }
 
 void EmitterSystem::shiftOrigin(const double (&by)[3]) noexcept {

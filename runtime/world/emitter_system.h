@@ -58,9 +58,13 @@ class EmitterSystem {
     void forgetObject(const Object& object) noexcept;  // that goes
     // `records`: the host's water is recorded; a field's follows from the field.
     void wetPatches(std::span<const Splash> splashes, bool records) noexcept;
-    void reserveSlots();                           // throws std::bad_alloc
-    void checkShift(const double (&by)[3]) const;  // throws
-    void shiftOrigin(const double (&by)[3]) noexcept;
+    void reserveSlots();  // throws std::bad_alloc
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, emitter] : emitters_.entries()) visit(emitter.position, "fire emitter", i);
+    }
+    void shiftOrigin(const double (&by)[3]) noexcept;  // all else
 
     void apply(const MoveEmitter& command) {
         move(emitters_.findId(command.slot), command.position,
@@ -109,10 +113,9 @@ class EmitterSystem {
                        uint32_t tick, size_t most, const PendingTexel& like, uint64_t& left);
     uint64_t attachFuel(components::FireEmitter& emitter, const components::JetHit& hit,
                         uint64_t fuel) noexcept;
-    void settlePatches(components::FireEmitter& emitter, uint32_t first) noexcept;
     void burnPatches(components::FireEmitter& emitter, uint32_t now);
     void heatStepThin(components::FireEmitter& emitter, Object& object,
-                      const components::JetHit& hit, float radius, float flux, uint32_t now);
+                      const components::JetHit& hit, float radius, float watts, uint32_t now);
     void findFootprint(const Object& object, const components::JetHit& hit, float radius);
 
     const WorldContext& context_;

@@ -50,10 +50,6 @@ void moveRecord(gpu::ExchangeObject& record, const double (&by)[3]) noexcept {
     }
 }
 
-bool sameRecord(const gpu::ExchangeObject& a, const gpu::ExchangeObject& b) noexcept {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
 template <class T>
 bool bySlots(const T& a, const T& b) noexcept {
     return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
@@ -70,8 +66,6 @@ ExchangeSystem::ExchangeSystem(const WorldContext& context, Scene& scene, const 
     : context_(context), scene_(scene), wind_(wind) {
     const FwWorldDef& def = context.def;
     transfer_.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
-    transfer_.capped = components::caps(transfer_.governance);
-    transfer_.governed = components::governs(transfer_.governance);
 }
 
 void ExchangeSystem::setFlags(uint32_t given) {
@@ -172,11 +166,7 @@ void ExchangeSystem::updateWind(Object& object, int wind) noexcept {
 
 void ExchangeSystem::markUnsent(Object& object) noexcept {
     transfer_.unsent = true;
-    if (!object.exchangeSent) return;
-    object.exchangeSent = false;
-    FW_ASSERT(transfer_.unsentSlots.size() < transfer_.unsentSlots.capacity(), "%zu records",
-              transfer_.unsentSlots.size());
-    transfer_.unsentSlots.push_back(object.slot);
+    transfer_.unsentSlots.add(object.slot);
 }
 
 // Copies the lists that a planned update points to, before they change.
@@ -215,20 +205,17 @@ void ExchangeSystem::latchPoses(uint32_t now) {
         record.neighbourFirst = object.remote.neighbourFirst;
         record.neighbourCount = object.remote.neighbourCount;
         updateWind(object, record.high.w);
-        if (object.exchangeVersion != 0 && sameRecord(record, object.remote)) continue;
+        if (object.exchangeVersion != 0 && std::memcmp(&record, &object.remote, sizeof record) == 0)
+            continue;
         keepPlanned();
         object.remote = record;
         updateReach(object);
-        FW_ASSERT(transfer_.waiting.size() < transfer_.waiting.capacity() || object.exchangeVersion,
-                  "%zu objects wait", transfer_.waiting.size());
-        if (object.exchangeVersion == 0 && !object.touched) transfer_.waiting.push_back(slot);
+        if (object.exchangeVersion == 0 && !object.touched) transfer_.waiting.add(slot);
         object.exchangeVersion = ++transfer_.version;
         markUnsent(object);
         if (!(record.flags & gpu::kExchangeLive) || slot > Neighbours::kSlot) continue;
-        if (!object.contactsDue) transfer_.contactsDue.push_back(slot);
-        object.contactsDue = true;
-        if (context_.def.visibility && !object.seenDue) transfer_.seenDue.push_back(slot);
-        object.seenDue = context_.def.visibility != nullptr;
+        transfer_.contactsDue.add(slot);
+        if (context_.def.visibility) transfer_.seenDue.add(slot);
         try {
             transfer_.neighbours.place(slot, boxOf(record), object.reach);
         } catch (...) {
@@ -259,24 +246,16 @@ void ExchangeSystem::rebuild() {
     transfer_.neighbours.clear();
     transfer_.close.clear();
     transfer_.links.clear();
-    for (auto* lists : {&transfer_.closeOf, &transfer_.linksOf}) {
-        core::growTo(*lists, scene_.objects.slotCount());
-        lists->assign(scene_.objects.slotCount(), {});
-    }
-    for (auto* slots :
-         {&transfer_.unsentSlots, &transfer_.contactsDue, &transfer_.seenDue, &transfer_.waiting})
-        slots->clear();  // each keeps its capacity
+    addLinkLists();
+    for (SlotSet* set : slotSets()) set->clear();
     for (auto [slot, object] : scene_.objects.entries()) {
         const bool placed = object.exchangeVersion != 0;
         const bool meets =
             placed && object.remote.flags & gpu::kExchangeLive && slot <= Neighbours::kSlot;
-        object.exchangeSent = !placed;
-        object.contactsDue = meets;
-        object.seenDue = meets && context_.def.visibility;
-        if (placed) transfer_.unsentSlots.push_back(slot);
-        if (placed && !object.touched) transfer_.waiting.push_back(slot);
-        if (object.contactsDue) transfer_.contactsDue.push_back(slot);
-        if (object.seenDue) transfer_.seenDue.push_back(slot);
+        if (placed) transfer_.unsentSlots.add(slot);
+        if (placed && !object.touched) transfer_.waiting.add(slot);
+        if (meets) transfer_.contactsDue.add(slot);
+        if (meets && context_.def.visibility) transfer_.seenDue.add(slot);
         if (meets) transfer_.neighbours.place(slot, boxOf(object.remote), object.reach);
     }
     std::erase_if(transfer_.pairs, [&](const PairContacts& pair) {
@@ -290,7 +269,7 @@ void ExchangeSystem::rebuild() {
         PairContacts& pair = transfer_.pairs[i];
         pair.versions[0] = pair.versions[1] = 0;
         pair.stamp = 0;
-        for (int k = 0; k < 2; ++k) addClose(pair.slots[k], pair.slots[1 - k], i);
+        addClose(i);
     }
     restoreSeen();
     transfer_.rebuild = false;
@@ -299,7 +278,7 @@ void ExchangeSystem::rebuild() {
 // The host's answers of saved pairs hold. An object without any was elsewhere since the host was
 // asked about it: it is asked when the world awakes, as it would have been.
 void ExchangeSystem::restoreSeen() {
-    std::erase_if(transfer_.seenDue, [&](uint32_t slot) {
+    transfer_.seenDue.eraseIf([&](uint32_t slot) {
         bool due = false, holds = false;
         for (const uint32_t entry : transfer_.neighbours.of(slot)) {
             const Seen wanted{{slot, entry & Neighbours::kSlot}};
@@ -310,9 +289,7 @@ void ExchangeSystem::restoreSeen() {
             holds = true;
             transfer_.neighbours.see(slot, wanted.slots[1], known->part);
         }
-        due &= !holds;
-        scene_.objectAt(slot).seenDue = due;
-        return !due;
+        return !due || holds;
     });
     transfer_.loadedSeen.clear();
 }
@@ -327,10 +304,10 @@ void ExchangeSystem::recordSeen(std::pmr::vector<Seen>& to) const {
         return;
     }
     for (auto [slot, owned] : scene_.objects.entries()) {
-        if (owned.seenDue) continue;
+        if (transfer_.seenDue.has(slot)) continue;
         for (const uint32_t entry : transfer_.neighbours.of(slot)) {
             const uint32_t other = entry & Neighbours::kSlot;
-            if (!scene_.objectAt(other).seenDue) to.push_back({{slot, other}, entry >> 24});
+            if (!transfer_.seenDue.has(other)) to.push_back({{slot, other}, entry >> 24});
         }
     }
 }
@@ -343,16 +320,16 @@ uint32_t ExchangeSystem::seenPart(const Object& from, const Object& to) const {
 
 // In both directions between objects that moved and all their neighbours.
 void ExchangeSystem::queryVisibility() {
-    for (const uint32_t slot : transfer_.seenDue) {
+    for (const uint32_t slot : transfer_.seenDue.slots()) {
         const Object& object = scene_.objectAt(slot);
         for (const uint32_t entry : transfer_.neighbours.of(slot)) {
             const Object& other = scene_.objectAt(entry & Neighbours::kSlot);
-            if (other.seenDue && other.slot < slot) continue;  // asked with that one
+            if (other.slot < slot && transfer_.seenDue.has(other.slot))
+                continue;  // asked with that
             transfer_.neighbours.see(slot, other.slot, seenPart(other, object));
             transfer_.neighbours.see(other.slot, slot, seenPart(object, other));
         }
     }
-    for (const uint32_t slot : transfer_.seenDue) scene_.objectAt(slot).seenDue = false;
     transfer_.seenDue.clear();
 }
 
@@ -368,13 +345,12 @@ uint32_t burnMask(const components::BurnableMesh& object) noexcept {
 }  // namespace
 
 // The links of one pair, in one direction.
-void ExchangeSystem::linkPair(const Object& to, const Object& from,
-                              std::span<const mesh::Contact> contacts, uint32_t since,
-                              std::pmr::vector<gpu::ContactLink>& out) {
+void ExchangeSystem::addLinks(const Object& to, const Object& from,
+                              std::span<const mesh::Contact> contacts, uint32_t since) {
+    std::pmr::vector<gpu::ContactLink>&fresh = transfer_.fresh, &merged = transfer_.merged;
+    fresh.clear();
     for (const mesh::Contact& contact : contacts) {
-        const FwMaterialDef& def =
-            to.data.materials[scene_.domainOf(to).texels[contact.texel].materialFlags &
-                              (gpu::kMaterialsPerObject - 1)];
+        const FwMaterialDef& def = to.data.materials[scene_.texelMaterial(to, contact.texel)];
         // An ordinary link of that length, and the flame's time across.
         const double metres = contact.gap / 1000.0;
         const double seconds =
@@ -388,20 +364,20 @@ void ExchangeSystem::linkPair(const Object& to, const Object& from,
         link.fromTexel = contact.fromTexel;
         link.delay = uint32_t(std::min(seconds * gpu::kTicksPerSecond, 1e9));
         link.since = since;
-        out.push_back(link);
+        fresh.push_back(link);
     }
+    if (fresh.empty()) return;
+    std::sort(fresh.begin(), fresh.end(), before);
+    merged.clear();
+    std::ranges::merge(transfer_.links.of(to.slot), fresh, std::back_inserter(merged), before);
+    transfer_.links.assign(to.slot, merged);
 }
 
 // Of objects that were latched since the last time. What memory refuses comes with the next call.
 void ExchangeSystem::findLinks(uint32_t now) {
     if (!(transfer_.flags & FW_WORLD_CONTACT)) return;
-    for (auto* lists : {&transfer_.closeOf, &transfer_.linksOf})
-        if (lists->size() < scene_.objects.slotCount()) {
-            core::growTo(*lists, scene_.objects.slotCount());
-            lists->resize(scene_.objects.slotCount());
-        }
-    for (const uint32_t slot : transfer_.contactsDue) linkClose(scene_.objectAt(slot), now);
-    for (const uint32_t slot : transfer_.contactsDue) scene_.objectAt(slot).contactsDue = false;
+    addLinkLists();
+    for (const uint32_t slot : transfer_.contactsDue.slots()) linkClose(scene_.objectAt(slot), now);
     transfer_.contactsDue.clear();
 }
 
@@ -428,19 +404,15 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         mesh::findContacts({{&scene_.domainOf(a), &a.remote, burnMask(a.data)},
                             {&scene_.domainOf(b), &b.remote, burnMask(b.data)}},
                            transfer_.contacts);
-        for (int k = 0; k < 2; ++k) {
-            transfer_.pairLinks.clear();
-            linkPair(*both[k], *both[1 - k], transfer_.contacts.found[k], since,
-                     transfer_.pairLinks);
-            addLinks(both[k]->slot, transfer_.pairLinks);
-        }
+        for (int k = 0; k < 2; ++k)
+            addLinks(*both[k], *both[1 - k], transfer_.contacts.found[k], since);
         pair.since = since;
         pair.touches = !transfer_.contacts.found[0].empty() || !transfer_.contacts.found[1].empty();
         pair.ids[0] = a.id;
         pair.ids[1] = b.id;
         pair.versions[0] = a.exchangeVersion;
         pair.versions[1] = b.exchangeVersion;
-        transfer_.links.fit(transfer_.linksOf[other]);
+        transfer_.links.fit(other);
     };
     // Where all objects are latched as they stand now, the few that are so near are found among
     // all; else among its neighbours, which are many.
@@ -456,92 +428,70 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         for (const uint32_t entry : transfer_.neighbours.of(object.slot))
             meet(entry & Neighbours::kSlot);
     }
-    const ListPlace& close = transfer_.closeOf[object.slot];
-    for (uint32_t i = close.count; i-- > 0;)
-        if (const CloseObject gone = transfer_.close.of(close)[i];
+    for (size_t i = transfer_.close.of(object.slot).size(); i-- > 0;)
+        if (const CloseObject gone = transfer_.close.of(object.slot)[i];
             transfer_.pairs[gone.pair].stamp != stamp) {
             dropPair(gone.pair);
-            transfer_.links.fit(transfer_.linksOf[gone.slot]);
+            transfer_.links.fit(gone.slot);
         }
-    transfer_.links.fit(transfer_.linksOf[object.slot]);
+    transfer_.links.fit(object.slot);
 }
 
-namespace {
-
-uint32_t closeIndex(std::span<const CloseObject> list, uint32_t slot) noexcept {
-    const auto at =
-        std::lower_bound(list.begin(), list.end(), slot,
-                         [](const CloseObject& one, uint32_t wanted) { return one.slot < wanted; });
-    return uint32_t(at - list.begin());
+void ExchangeSystem::addLinkLists() {
+    transfer_.close.addLists(scene_.objects.slotCount());
+    transfer_.links.addLists(scene_.objects.slotCount());
 }
 
-}  // namespace
+uint32_t ExchangeSystem::closeIndex(uint32_t slot, uint32_t other) const noexcept {
+    return transfer_.close.indexOf(slot, other, &CloseObject::slot);
+}
 
-void ExchangeSystem::addClose(uint32_t slot, uint32_t other, uint32_t pair) {
-    FW_ASSERT(slot < transfer_.closeOf.size(), "%u of %zu lists", slot, transfer_.closeOf.size());
-    ListPlace& list = transfer_.closeOf[slot];
-    transfer_.close.reserve(list, list.count + 1);
-    transfer_.close.insert(list, closeIndex(transfer_.close.of(list), other), {other, pair});
+// Each of a pair to the list of the other. Throws std::bad_alloc, and then neither is in it.
+void ExchangeSystem::addClose(uint32_t pair) {
+    const auto [a, b] = transfer_.pairs[pair].slots;
+    for (const uint32_t slot : {b, a})
+        transfer_.close.reserve(slot, uint32_t(transfer_.close.of(slot).size()) + 1);
+    transfer_.close.insert(a, closeIndex(a, b), {b, pair});
+    transfer_.close.insert(b, closeIndex(b, a), {a, pair});
 }
 
 // Their pair, which may be new.
 uint32_t ExchangeSystem::closePair(uint32_t a, uint32_t b) {
-    const std::span<const CloseObject> list = transfer_.close.of(transfer_.closeOf[a]);
-    if (const uint32_t at = closeIndex(list, b); at < list.size() && list[at].slot == b)
+    const std::span<const CloseObject> list = transfer_.close.of(a);
+    if (const uint32_t at = closeIndex(a, b); at < list.size() && list[at].slot == b)
         return list[at].pair;
     FW_ASSERT(a < b, "objects %u and %u", a, b);
     const auto pair = uint32_t(transfer_.pairs.size());
-    transfer_.close.reserve(transfer_.closeOf[b],
-                            transfer_.closeOf[b].count + 1);  // the second then finds room
-    core::growTo(transfer_.pairs, pair + 1);
-    addClose(a, b, pair);
-    addClose(b, a, pair);
     transfer_.pairs.push_back({{a, b}});
+    try {
+        addClose(pair);
+    } catch (...) {
+        transfer_.pairs.pop_back();
+        throw;
+    }
     return pair;
 }
 
 // The two are apart, or one of them is gone.
 void ExchangeSystem::dropPair(uint32_t pair) noexcept {
-    const auto entryOf = [&](const PairContacts& of, int k) {
-        return closeIndex(transfer_.close.of(transfer_.closeOf[of.slots[k]]), of.slots[1 - k]);
-    };
     FW_ASSERT(pair < transfer_.pairs.size(), "%u of %zu pairs", pair, transfer_.pairs.size());
-    const PairContacts gone = transfer_.pairs[pair];
+    const PairContacts gone = transfer_.pairs[pair], last = transfer_.pairs.back();
     for (int k = 0; k < 2; ++k) {
-        dropLinks(gone.slots[k], gone.slots[1 - k]);
-        transfer_.close.erase(transfer_.closeOf[gone.slots[k]], entryOf(gone, k));
+        const uint32_t slot = gone.slots[k], other = gone.slots[1 - k];
+        dropLinks(slot, other);
+        transfer_.close.erase(slot, closeIndex(slot, other));
     }
-    const PairContacts& last = transfer_.pairs.back();  // takes its place
-    if (pair + 1 != transfer_.pairs.size())
-        for (int k = 0; k < 2; ++k)
-            transfer_.close.of(transfer_.closeOf[last.slots[k]])[entryOf(last, k)].pair = pair;
+    for (int k = 0; k < 2 && pair + 1 != transfer_.pairs.size(); ++k) {  // the last takes its place
+        const uint32_t slot = last.slots[k], other = last.slots[1 - k];
+        transfer_.close.set(slot, closeIndex(slot, other), {other, pair});
+    }
     transfer_.pairs[pair] = last;
     transfer_.pairs.pop_back();
 }
 
 void ExchangeSystem::dropLinks(uint32_t to, uint32_t from) noexcept {
-    FW_ASSERT(to < transfer_.linksOf.size(), "%u of %zu lists", to, transfer_.linksOf.size());
-    ListPlace& place = transfer_.linksOf[to];
-    const std::span<gpu::ContactLink> list = transfer_.links.of(place);
-    const auto end = std::remove_if(list.begin(), list.end(), [&](const gpu::ContactLink& link) {
-        return link.fromObject == from;
-    });
-    if (end == list.end()) return;
-    std::fill(end, list.end(), TransferState::noLink());
-    transfer_.links.mark(place.first, place.count);
-    place.count = uint32_t(end - list.begin());
-}
-
-void ExchangeSystem::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
-    if (fresh.empty()) return;
-    ListPlace& place = transfer_.linksOf[to];
-    std::sort(fresh.begin(), fresh.end(), before);
-    const std::span<const gpu::ContactLink> list = transfer_.links.of(place);
-    transfer_.mergedLinks.clear();
-    std::merge(list.begin(), list.end(), fresh.begin(), fresh.end(),
-               std::back_inserter(transfer_.mergedLinks), before);
-    transfer_.links.reserve(place, uint32_t(transfer_.mergedLinks.size()));
-    transfer_.links.assign(place, transfer_.mergedLinks);
+    transfer_.links.eraseIf(to,
+                            [&](const gpu::ContactLink& link) { return link.fromObject == from; });
 }
 
 // The next object in its slot does not inherit its contacts. The backend gets the change before the
@@ -551,13 +501,7 @@ void ExchangeSystem::forgetObject(const Object& object) noexcept {
     removeFromShield(object.slot);
     transfer_.unsent |= object.exchangeVersion != 0;
     const uint32_t slot = object.slot;
-    const auto leave = [&](std::pmr::vector<uint32_t>& slots, bool in) {
-        if (in || transfer_.rebuild) std::erase(slots, slot);
-    };
-    leave(transfer_.unsentSlots, !object.exchangeSent);
-    leave(transfer_.waiting, object.exchangeVersion != 0);
-    leave(transfer_.contactsDue, object.contactsDue);
-    leave(transfer_.seenDue, object.seenDue);
+    for (SlotSet* set : slotSets()) set->erase(slot);
     if (transfer_.rebuild) {  // its lists are none
         std::erase_if(transfer_.pairs, [&](const PairContacts& pair) {
             return pair.slots[0] == slot || pair.slots[1] == slot;
@@ -567,12 +511,9 @@ void ExchangeSystem::forgetObject(const Object& object) noexcept {
         });
         return;
     }
-    if (slot < transfer_.closeOf.size()) {
-        const ListPlace& close = transfer_.closeOf[slot];
-        while (close.count != 0) dropPair(transfer_.close.of(close).back().pair);
-        transfer_.close.drop(transfer_.closeOf[slot]);
-        transfer_.links.drop(transfer_.linksOf[slot]);
-    }
+    while (!transfer_.close.of(slot).empty()) dropPair(transfer_.close.of(slot).back().pair);
+    transfer_.close.drop(slot);
+    transfer_.links.drop(slot);
     transfer_.neighbours.remove(slot);
 }
 
@@ -582,8 +523,8 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
     if (transfer_.rebuild) rebuild();
     step.rules = rules();
     step.exchange = step.reduce;
-    step.governed = transfer_.governed;
-    step.capped = transfer_.capped;
+    step.governed = transfer_.governed();
+    step.capped = transfer_.cappedObjects != 0 || components::caps(transfer_.governance);
     if (now % gpu::kExchangeTicks == 0) {
         latchPoses(now);
         frame_.latched = true;
@@ -598,7 +539,7 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
         auto* owned = scene_.objects.at(slot);
         if (!owned) continue;
         Object& object = **owned;
-        const ListPlace list = transfer_.neighbours.listOf(slot);
+        const ListPlace list = transfer_.neighbours.pool().placeOf(slot);
         if (object.remote.neighbourFirst == list.first &&
             object.remote.neighbourCount == list.count)
             continue;
@@ -611,8 +552,8 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
             core::Owned<ExchangeTables>::make(context_.memory, context_.memory));
     ExchangeTables& tables = *frame_.tables[frame_.used];
     tables.objects.clear();
-    core::growTo(tables.objects, transfer_.unsentSlots.size());
-    for (const uint32_t slot : transfer_.unsentSlots)
+    core::growTo(tables.objects, transfer_.unsentSlots.slots().size());
+    for (const uint32_t slot : transfer_.unsentSlots.slots())
         tables.objects.push_back({slot, scene_.objectAt(slot).remote});
     transfer_.neighbours.pool().listChanges(tables.neighbourRanges);
     transfer_.links.listChanges(tables.linkRanges);
@@ -635,23 +576,17 @@ void ExchangeSystem::commit(bool spreadFound, bool waitersTouched) noexcept {
     }
     transfer_.spreadKnown |= spreadFound;
     if (waitersTouched)
-        std::erase_if(transfer_.waiting,
-                      [&](uint32_t slot) { return scene_.objectAt(slot).touched; });
+        transfer_.waiting.eraseIf([&](uint32_t slot) { return scene_.objectAt(slot).touched; });
     if (!frame_.flushed) return;
-    for (const uint32_t slot : transfer_.unsentSlots) scene_.objectAt(slot).exchangeSent = true;
     transfer_.unsentSlots.clear();
     transfer_.neighbours.settle();
     transfer_.links.settle();
     transfer_.unsent = false;
 }
 
-// The world is governed while an object or its def limits fire.
 void ExchangeSystem::countGoverned(const Object& object, bool more) noexcept {
     transfer_.cappedObjects += components::caps(object.governance) ? (more ? 1u : ~0u) : 0u;
     transfer_.governedObjects += components::governs(object.governance) ? (more ? 1u : ~0u) : 0u;
-    transfer_.capped = transfer_.cappedObjects != 0 || components::caps(transfer_.governance);
-    transfer_.governed =
-        transfer_.governedObjects != 0 || components::governs(transfer_.governance);
 }
 
 void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) noexcept {
@@ -663,11 +598,10 @@ void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) n
         // A slot may be another's since.
         const auto* by = scene_.objects.findSlot(giver);
         if (now.litTick != 0 && by && (*by)->firstFrame <= readback.frameIndex) {
-            const gpu::ExchangeObject& box = object.remote;
-            const int low[3] = {box.turn0.w, box.turn1.w, box.turn2.w};
+            const mesh::Box box = boxOf(object.remote);
             float middle[3];
             for (int i = 0; i < 3; ++i)
-                middle[i] = float(double(low[i]) + double(box.high[i])) / 2000.0f;
+                middle[i] = float(double(box.low[i]) + double(box.high[i])) / 2000.0f;
             context_.raise(FW_EVENT_SPREAD_TO, &object, gpu::hopsOf(now.litBy), readback.frameIndex,
                            middle, float(double(now.litTick) / gpu::kTicksPerSecond),
                            scene_.objects.idOf(giver));
@@ -693,9 +627,7 @@ void ExchangeSystem::beginFrame() noexcept {
 void ExchangeSystem::addObject(const Object& object) noexcept { countGoverned(object, true); }
 
 void ExchangeSystem::reserveSlots() {
-    for (auto* slots :
-         {&transfer_.unsentSlots, &transfer_.waiting, &transfer_.contactsDue, &transfer_.seenDue})
-        core::growTo(*slots, scene_.objects.slotCount());
+    for (SlotSet* set : slotSets()) set->reserve(scene_.objects.slotCount());
 }
 
 // ---- saves ------------------------------------------------------------------------------------
@@ -759,7 +691,6 @@ void ExchangeSystem::restore(ExchangeSnapshot& from) noexcept {
 // The record of one that no move made stale follows from its pose, but for the wind that it was
 // latched in.
 void ExchangeSystem::restoreObject(Object& object, bool placed) noexcept {
-    object.exchangeSent = false;
     object.exchangeVersion = placed ? ++transfer_.version : 0;
     if (object.exchangeDue) scene_.moved.push_back(object.slot);
     if (!placed) {
@@ -770,13 +701,6 @@ void ExchangeSystem::restoreObject(Object& object, bool placed) noexcept {
     if (!object.exchangeDue) object.remote = recordOf(object);
     object.remote.high.w = wind;
     updateReach(object);
-}
-
-void ExchangeSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, occluder] : occluders_.entries())
-        checkMoved(occluder.pose.translation, by, "occluder", i);
-    if (shield_.grid.shape.cells() != 0)
-        checkMillimetres(shield_.grid.shape.origin, by, "heat shield", 0);
 }
 
 std::pmr::vector<Seen> ExchangeSystem::recordedSeen() const {
@@ -790,25 +714,24 @@ void ExchangeSystem::shiftOrigin(const double (&by)[3]) noexcept {
     for (auto [i, owned] : scene_.objects.entries())
         if (owned.exchangeVersion != 0) moveRecord(owned.remote, by);
     transfer_.rebuild = transfer_.unsent = true;  // its grid is of the places before
-    for (auto [i, occluder] : occluders_.entries()) moveBy(occluder.pose.translation, by);
     for (gpu::HeatOccluder& occluder : transfer_.occluders) {
         gpu::ivec4* turns[] = {&occluder.turn0, &occluder.turn1, &occluder.turn2};
         for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
     }
-    if (shield_.grid.shape.cells() == 0) return;
-    moveMillimetres(shield_.grid.shape.origin, by);
-    shield_.unsent = shield_.unpacked = true;
+    if (shield_.grid.shape.cells() != 0) shield_.unsent = shield_.unpacked = true;
 }
 
-ExchangeSystem::Memory ExchangeSystem::memory() const noexcept {
-    Memory bytes;
-    bytes.neighbours = transfer_.neighbours.bytes();
+uint64_t ExchangeSystem::neighbourBytes() const noexcept {
+    uint64_t bytes = transfer_.neighbours.bytes();
     for (const auto& tables : frame_.tables)
-        bytes.neighbours += tables->objects.capacity() * sizeof(gpu::ExchangeUpdate::Placed) +
-                            tables->neighbours.capacity() * sizeof(uint32_t);
-    bytes.contacts = transfer_.links.bytes() + transfer_.close.bytes() +
-                     transfer_.pairs.capacity() * sizeof(PairContacts);
+        bytes += tables->objects.capacity() * sizeof(gpu::ExchangeUpdate::Placed) +
+                 tables->neighbours.capacity() * sizeof(uint32_t);
     return bytes;
+}
+
+uint64_t ExchangeSystem::contactBytes() const noexcept {
+    return transfer_.links.bytes() + transfer_.close.bytes() +
+           transfer_.pairs.capacity() * sizeof(PairContacts);
 }
 
 }  // namespace fw::world

@@ -104,32 +104,32 @@ struct TransferState {
     uint32_t flags = 0;        // FwWorldFlags: heat-transfer modes
     uint32_t objectFlags = 0;  // FwWorldFlags that objects are created under
     components::Governance governance;
-    bool governed = false;  // some object or the world limits its fire
-    bool capped = false;    // and the number of burning tiles
-    uint32_t governedObjects = 0, cappedObjects = 0;
+    uint32_t governedObjects = 0;  // that limit their fire
+    uint32_t cappedObjects = 0;    // and the number of their burning tiles
+    [[nodiscard]] bool governed() const noexcept {
+        return governedObjects != 0 || components::governs(governance);
+    }
     bool unsent = false;  // the backend does not know the latest
     bool occludersDue = false;
-    bool warms = false;  // radiation or plumes were on at some time
-    uint64_t fades = 0;  // tick until which heat received from switched-off modes fades
-    std::pmr::vector<uint32_t> unsentSlots{memory};  // of records that the backend lacks
-    uint32_t version = 0;                            // of the last latched object
-    Neighbours neighbours{memory};                   // of latched boxes
-    std::pmr::vector<Seen> loadedSeen{memory};       // kept by slots until the lists are rebuilt
-    bool rebuild = false;                            // all but `pairs` is stale
+    bool warms = false;             // radiation or plumes were on at some time
+    uint64_t fades = 0;             // tick until which heat received from switched-off modes fades
+    SlotSet unsentSlots{memory};    // of records that the backend lacks
+    uint32_t version = 0;           // of the last latched object
+    Neighbours neighbours{memory};  // of latched boxes
+    std::pmr::vector<Seen> loadedSeen{memory};  // kept by slots until the lists are rebuilt
+    bool rebuild = false;                       // all but `pairs` is stale
     // Placed objects that no event touched, and some that one did since.
-    std::pmr::vector<uint32_t> waiting{memory};
+    SlotSet waiting{memory};
     bool spreadKnown = false;  // all neighbours of touched objects are touched, but for changed()
     // Objects latched since their contacts were found, and since the host was asked what they see.
-    std::pmr::vector<uint32_t> contactsDue{memory}, seenDue{memory};
-    ListPool<CloseObject> close{memory, {}};
-    std::pmr::vector<ListPlace> closeOf{memory};  // by slot: of `close`, by the other's slot
+    SlotSet contactsDue{memory}, seenDue{memory};
+    ListPool<CloseObject> close{memory, {}};  // by the other's slot
     std::pmr::vector<PairContacts> pairs{memory};
-    ListPool<gpu::ContactLink> links{memory, noLink()};
-    std::pmr::vector<ListPlace> linksOf{memory};  // by target slot: of `links`, by texel
+    ListPool<gpu::ContactLink> links{memory, noLink()};  // of the target's slot, by texel
     uint64_t contactStamp = 0;
-    mesh::Contacts contacts{memory};                                            // scratch
-    std::pmr::vector<gpu::ContactLink> pairLinks{memory}, mergedLinks{memory};  // scratch
-    std::pmr::vector<gpu::HeatOccluder> occluders{memory};                      // latched
+    mesh::Contacts contacts{memory};                                   // scratch
+    std::pmr::vector<gpu::ContactLink> fresh{memory}, merged{memory};  // scratch
+    std::pmr::vector<gpu::HeatOccluder> occluders{memory};             // latched
 };
 
 struct HeatOcclusionState {
@@ -180,11 +180,17 @@ class ExchangeSystem {
     void addObject(const Object& object) noexcept;
     void forgetObject(const Object& object) noexcept;  // that goes
     void forgetSpread() noexcept { transfer_.spreadKnown = false; }
-    void reserveSlots();                           // throws std::bad_alloc
-    void checkShift(const double (&by)[3]) const;  // throws
+    void reserveSlots();  // throws std::bad_alloc
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, occluder] : occluders_.entries())
+            visit(occluder.pose.translation, "occluder", i);
+        if (shield_.grid.shape.cells() != 0) visit(shield_.grid.shape.origin, "heat shield", 0u);
+    }
     // Throws std::bad_alloc; then nothing has changed.
     [[nodiscard]] std::pmr::vector<Seen> recordedSeen() const;
-    void shiftOrigin(const double (&by)[3]) noexcept;
+    void shiftOrigin(const double (&by)[3]) noexcept;  // all else
     // After a shift that had the lists of neighbours rebuilt.
     void restoreSeen(std::pmr::vector<Seen>& seen) noexcept {
         if (transfer_.rebuild) transfer_.loadedSeen.swap(seen);
@@ -209,16 +215,15 @@ class ExchangeSystem {
         return shield_.grid;
     }
     [[nodiscard]] bool isOn() const noexcept {
-        return transfer_.flags != 0 || transfer_.governed || context_.clock.tick < transfer_.fades;
+        return transfer_.flags != 0 || transfer_.governed() ||
+               context_.clock.tick < transfer_.fades;
     }
     [[nodiscard]] uint64_t pairsExamined() const noexcept {
         return transfer_.neighbours.examined();
     }
     [[nodiscard]] components::OcclusionView occlusionView();
-    struct Memory {
-        uint64_t neighbours = 0, contacts = 0;  // bytes
-    };
-    [[nodiscard]] Memory memory() const noexcept;
+    [[nodiscard]] uint64_t neighbourBytes() const noexcept;
+    [[nodiscard]] uint64_t contactBytes() const noexcept;
 
  private:
     // exchange_system.cpp
@@ -233,14 +238,15 @@ class ExchangeSystem {
     uint32_t seenPart(const Object& from, const Object& to) const;
     void findLinks(uint32_t now);
     void linkClose(Object& object, uint32_t now);
-    void addClose(uint32_t slot, uint32_t other, uint32_t pair);
+    void addLinkLists();
+    [[nodiscard]] uint32_t closeIndex(uint32_t slot, uint32_t other) const noexcept;
+    void addClose(uint32_t pair);
     uint32_t closePair(uint32_t a, uint32_t b);
     void dropPair(uint32_t pair) noexcept;
     void dropLinks(uint32_t to, uint32_t from) noexcept;
-    void addLinks(uint32_t to, std::span<gpu::ContactLink> fresh);
     gpu::ExchangePush rules() const noexcept;
-    void linkPair(const Object& to, const Object& from, std::span<const mesh::Contact> contacts,
-                  uint32_t since, std::pmr::vector<gpu::ContactLink>& out);
+    void addLinks(const Object& to, const Object& from, std::span<const mesh::Contact> contacts,
+                  uint32_t since);
     void countGoverned(const Object& object, bool more) noexcept;
     void recordSeen(std::pmr::vector<Seen>& to) const;
     void restoreSeen();
@@ -256,6 +262,11 @@ class ExchangeSystem {
     void removeFromShield(uint32_t slot) noexcept;
     void packHeatOcclusion();
     void planOcclusion(gpu::StepPlan& step, bool awake);
+
+    [[nodiscard]] std::array<SlotSet*, 4> slotSets() noexcept {
+        return {&transfer_.unsentSlots, &transfer_.waiting, &transfer_.contactsDue,
+                &transfer_.seenDue};
+    }
 
     const WorldContext& context_;
     Scene& scene_;

@@ -6,7 +6,6 @@
 #include "world/burn_system.h"
 #include "world/geometry.h"
 #include "world/recording.h"
-#include "world/shift.h"
 #include "world/wind_system.h"
 
 #include <algorithm>
@@ -132,13 +131,11 @@ void FieldSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
     runs_.clear();
     rounds_.clear();
     for (uint32_t round = 0; round < kMaxSteps; ++round) {
-        for (uint32_t i = 0; fields_.live() > 0 && i < fields_.slotCount(); ++i) {
-            const auto* field = fields_.at(i);
-            if (!field) continue;
-            const uint32_t step = (*field)->steps + round;
+        for (auto [i, field] : fields_.entries()) {
+            const uint32_t step = field.steps + round;
             FW_ASSERT(runs_.size() < runs_.capacity(), "%zu runs", runs_.size());
-            if (step < components::fieldSteps((*field)->data, end - (*field)->began))
-                runs_.push_back({i, step - (*field)->shownBase});
+            if (step < components::fieldSteps(field.data, end - field.began))
+                runs_.push_back({i, step - field.shownBase});
         }
         const auto count = uint32_t(runs_.size());
         if (count == (round > 0 ? rounds_.back() : 0)) break;
@@ -146,24 +143,21 @@ void FieldSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
     }
     update_.runs = runs_;
     update_.rounds = rounds_;
-    planDraws(frame.time.after);
-    if (fields_.live() > 0 || shown_ > 0) plan.fields = &update_;
-}
-
-void FieldSystem::planDraws(const Clock& now) noexcept {
-    draws_.clear();
-    drawn_.clear();
+    const Clock& now = frame.time.after;
     const double ticks = double(now.tick) +
                          double(now.fraction) / double(Clock::kStepUnits) * double(gpu::kStepTicks);
+    draws_.clear();
+    drawn_.clear();
     for (auto [i, field] : fields_.entries()) {
         if ((field.data.flags & FW_FIELD_HIDDEN)) continue;
-        draws_.push_back(components::fieldDraw(
-            field.data, ticks - double(field.began),
-            components::fieldSteps(field.data, now.tick - field.began), ticks));
+        draws_.push_back(
+            components::fieldDraw(field.data, ticks - double(field.began),
+                                  components::fieldSteps(field.data, end - field.began), ticks));
         drawn_.push_back(i);
     }
     update_.draws = draws_.data();
     update_.drawn = drawn_;
+    if (fields_.live() > 0 || shown_ > 0) plan.fields = &update_;
 }
 
 void FieldSystem::commit(const HostFrame& frame) noexcept {
@@ -196,11 +190,11 @@ void FieldSystem::stepCells(Field& field, uint64_t tick) noexcept {
 }
 
 void FieldSystem::wetObjects(uint32_t now) {
-    for (auto [i, field] : fields_.entries()) wetObjects(field, now);
+    for (auto [i, field] : fields_.entries())
+        if (field.cells) wetObjects(field, now);
 }
 
 void FieldSystem::wetObjects(Field& field, uint32_t now) {
-    if (!field.cells) return;
     stepCells(field, now);
     const components::ParticleField& data = field.data;
     const uint32_t width = data.def.width, height = data.def.height;
@@ -285,15 +279,6 @@ void FieldSystem::restore(SlottedList<FieldSnapshot>& from) noexcept {
         if (one.cells) static_cast<field::FieldCells&>(*field.cells) = std::move(*one.cells);
     }
     sendRules();
-}
-
-void FieldSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, field] : fields_.entries())
-        checkMoved(field.data.position, by, "particle field", i);
-}
-
-void FieldSystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto [i, field] : fields_.entries()) moveBy(field.data.position, by);
 }
 
 }  // namespace fw::world

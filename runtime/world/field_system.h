@@ -60,8 +60,11 @@ class FieldSystem {
     void plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept;
     void commit(const HostFrame& frame) noexcept;
     void onReadback(const gpu::Readback& readback) noexcept;
-    void checkShift(const double (&by)[3]) const;  // throws
-    void shiftOrigin(const double (&by)[3]) noexcept;
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, field] : fields_.entries()) visit(field.data.position, "particle field", i);
+    }
 
     void apply(const MoveField& command) {
         move(fields_.findId(command.slot), command.position,
@@ -81,7 +84,6 @@ class FieldSystem {
     static constexpr uint32_t kMaxSteps = gpu::kMaxFieldRounds;  // of a frame
     [[nodiscard]] field::FieldRules rulesOf(const components::ParticleField& field) const noexcept;
     void sendRules() noexcept;
-    void planDraws(const Clock& now) noexcept;
     void stepCells(Field& field, uint64_t tick) noexcept;
     void wetObjects(Field& field, uint32_t now);
 

@@ -57,41 +57,42 @@ uint32_t ballsOf(const VolumetricFire& fire, const float up[3], const float wind
 
 }  // namespace
 
-uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace, double flux) noexcept {
+uint64_t BurnSystem::ticksToCatch(const Object& object, uint32_t material,
+                                  double flux) const noexcept {
+    const FwMaterialDef& m = object.data.materials[material];
     const double rise = std::max(double(m.ignitionTemperature - fire::kAmbient), 1.0) / flux;
     const double store = double(m.density) * double(m.specificHeat);
     const double thick = 0.785398 * double(m.conductivity) * store * rise * rise;
     const double thin = store * double(m.thickness) * rise;
     double seconds = m.thickness > 0 ? std::min(thick, thin) : thick;
-    seconds *= (1.0 + 2.0 * double(moisture)) / double(pace);
+    seconds *=
+        (1.0 + 2.0 * double(m.moisture + object.data.moisture)) / double(context_.def.paceFactor);
     return uint64_t(std::clamp(seconds, 0.0, 3600.0) * double(gpu::kTicksPerSecond));
 }
 
 void FlameSystem::forgetObject(const Object& object) noexcept {
-    for (auto [i, fire] : fires_.entries())
-        for (FireTouch& touch : fire.touches)
-            if (touch.object.index1 == object.id.index1) touch = {};
+    for (auto [i, fire] : fires_.entries()) forgetIn(fire.touches, object.id);
 }
 
 void FlameSystem::igniteObjects(uint32_t now) {
     for (auto [i, fire] : fires_.entries())
-        if (fire.data.flags & FW_FIRE_IGNITES) igniteObjects(fire, now);
+        if (fire.data.flags & FW_FIRE_IGNITES) {
+            beginTouches(fire.touches);
+            if (fire.data.power > 0) igniteObjects(fire, now);
+            endTouches(fire.touches);
+        }
 }
 
 void FlameSystem::igniteObjects(Fire& fire, uint32_t now) {
-    for (FireTouch& touch : fire.touches) touch.seen = false;
     std::array<Ball, volume::kMaxControlPoints> balls;
     const uint32_t count =
-        fire.data.power > 0
-            ? ballsOf(fire.data, context_.def.up, wind_.at(fire.data.position, now).data(), balls)
-            : 0;
+        ballsOf(fire.data, context_.def.up, wind_.at(fire.data.position, now).data(), balls);
     float span = 0;  // from the first ball's middle, around all of them
     for (uint32_t k = 0; k < count; ++k) {
         const float away = std::sqrt(squaredDistance(balls[k].place, balls[0].place));
         span = std::max(span, 1.001f * away + balls[k].radius);
     }
-    for (const uint32_t slot :
-         count > 0 ? scene_.objectsNear(balls[0].place, span) : std::span<const uint32_t>()) {
+    for (const uint32_t slot : scene_.objectsNear(balls[0].place, span)) {
         Object& object = scene_.objectAt(slot);
         if (object.texels == 0) continue;
         const components::Pose& pose = object.data.pose;
@@ -121,9 +122,7 @@ void FlameSystem::igniteObjects(Fire& fire, uint32_t now) {
             std::copy_n(balls[0].place, 3, touch->fireAt);
             std::copy_n(stands, 3, touch->objectAt);
         }
-        const FwMaterialDef& of = object.data.materials[material];
-        uint64_t wait =
-            ticksToCatch(of, of.moisture + object.data.moisture, context_.def.paceFactor, kFlux);
+        uint64_t wait = burn_.ticksToCatch(object, material, kFlux);
         if (touch->lit) wait = std::max(wait, kAgain);
         if (now - touch->since < wait) continue;
         FwIgnitionDef def{};
@@ -136,8 +135,6 @@ void FlameSystem::igniteObjects(Fire& fire, uint32_t now) {
         touch->lit = true;
         touch->since = now;
     }
-    for (FireTouch& touch : fire.touches)
-        if (!touch.seen) touch.object = {};
 }
 
 }  // namespace fw::world

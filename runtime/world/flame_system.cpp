@@ -62,13 +62,8 @@ FwVolumetricFireId FlameSystem::create(const FwVolumetricFireDef& def) {
     components::makeVolumetricFire(def, ownSeed, fire->data);
     fire->data.profile = layer;
     predictAhead(fire->data);
+    reserve(fire->data.partCount);
     const FwVolumetricFireId id = fires_.create(std::move(fire));
-    try {
-        reserve(0);
-    } catch (...) {
-        fires_.destroy(id);
-        throw;
-    }
     if (def.profile.index1 != 0) ++profileIds_.get(def.profile).users;
     ++made_;
     return id;
@@ -120,8 +115,7 @@ void FlameSystem::setHidden(FwVolumetricFireId id, bool hidden) {
 }
 
 void FlameSystem::setTier(FwVolumetricFireId id, uint32_t tier) {
-    VolumetricFire& fire = fires_.get(id)->data;
-    components::setFireTier(fire, tier, "tier");
+    components::setFireTier(fires_.get(id)->data, tier, "tier");
 }
 
 void FlameSystem::fillState(FwVolumetricFireId id, FwVolumetricFireState& state) {
@@ -248,45 +242,21 @@ void FlameSystem::restore(const SlottedList<FireSnapshot>& from) noexcept {
             components::setFirePower(fire.data, one.power);
             predictAhead(fire.data);
         }
-        for (size_t k = 0; k < one.touches.size(); ++k) {
-            const bool seen = fire.touches[k].seen;
-            fire.touches[k] = one.touches[k];
-            fire.touches[k].seen = seen;
-        }
-    }
-}
-
-void FlameSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, fire] : fires_.entries()) {
-        checkMoved(fire.data.position, by, "volumetric fire", i);
-        for (uint32_t k = 0; k < fire.data.pointCount; ++k)
-            checkMoved(fire.data.points[k].position, by, "a point of volumetric fire", i);
-    }
-    for (auto [i, collider] : colliders_.entries()) {
-        checkMoved(collider.shape.place, by, "fire collider", i);
-        if (collider.shape.kind == volume::ColliderKind::Capsule)
-            checkMoved(collider.shape.extent, by, "fire collider", i);
+        fire.touches = one.touches;
     }
 }
 
 void FlameSystem::shiftOrigin(const double (&by)[3]) noexcept {
     for (auto [i, owned] : fires_.entries()) {
-        VolumetricFire& fire = owned.data;
-        moveBy(fire.position, by);
-        for (volume::ControlPoint& point : fire.points) moveBy(point.position, by);
-        moveState(fire.state, by);
-        moveState(fire.nextState, by);
+        moveState(owned.data.state, by);
+        moveState(owned.data.nextState, by);
         for (FireTouch& touch : owned.touches) {
             moveBy(touch.fireAt, by);
             moveBy(touch.objectAt, by);
         }
     }
     burning_.carry(gpu::vec3(float(by[0]), float(by[1]), float(by[2])));
-    for (auto [i, collider] : colliders_.entries()) {
-        moveBy(collider.shape.place, by);
-        if (collider.shape.kind == volume::ColliderKind::Capsule) moveBy(collider.shape.extent, by);
-        moveBy(collider.picture.eye, by);
-    }
+    for (auto [i, collider] : colliders_.entries()) moveBy(collider.picture.eye, by);
 }
 
 }  // namespace fw::world

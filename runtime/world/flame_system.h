@@ -99,8 +99,21 @@ class FlameSystem {
     void plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept;
     void commit() noexcept;
     void forgetObject(const Object& object) noexcept;  // that goes
-    void checkShift(const double (&by)[3]) const;      // throws
-    void shiftOrigin(const double (&by)[3]) noexcept;
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, fire] : fires_.entries()) {
+            visit(fire.data.position, "volumetric fire", i);
+            for (uint32_t k = 0; k < fire.data.pointCount; ++k)
+                visit(fire.data.points[k].position, "a point of volumetric fire", i);
+        }
+        for (auto [i, collider] : colliders_.entries()) {
+            visit(collider.shape.place, "fire collider", i);
+            if (collider.shape.kind == volume::ColliderKind::Capsule)
+                visit(collider.shape.extent, "fire collider", i);
+        }
+    }
+    void shiftOrigin(const double (&by)[3]) noexcept;  // all else
 
     void apply(const MoveFire& command) { move(fires_.findId(command.slot), command.position); }
     void apply(const SetFirePower& command) {

@@ -95,18 +95,21 @@ void FlameSystem::setFlipbooks(FwFlipbookId fire, FwFlipbookId smoke) {
 }
 
 components::EmitterFlipbooks FlameSystem::flipbooksOf(const FwFireEmitterDef& def) {
+    const auto pack = [&](std::span<const FwFlipbookId> ids, const char* name,
+                          flipbook::Kind kind) {
+        uint32_t bytes = 0, at = 0;
+        for (const FwFlipbookId id : ids)
+            if (const uint32_t b = flipbookByte(id, name, kind)) bytes |= b << (8 * at++);
+        return bytes;
+    };
     components::EmitterFlipbooks books;
-    for (uint32_t i = 0, at = 0; i < 3; ++i)
-        if (const uint32_t b = flipbookByte(def.fireFlipbooks[i], "FwFireEmitterDef::fireFlipbooks",
-                                            flipbook::Kind::Fire)) {
-            books.fireEmits =
-                (at == 0 || books.fireEmits) && flipbooks_.get(def.fireFlipbooks[i]).emits;
-            books.fire |= b << (8 * at++);
-        }
-    for (uint32_t i = 0, at = 0; i < 2; ++i)
-        if (const uint32_t b = flipbookByte(
-                def.smokeFlipbooks[i], "FwFireEmitterDef::smokeFlipbooks", flipbook::Kind::Smoke))
-            books.other |= b << (8 * at++);
+    books.fire = pack(def.fireFlipbooks, "FwFireEmitterDef::fireFlipbooks", flipbook::Kind::Fire);
+    books.fireEmits =
+        books.fire != 0 && std::ranges::all_of(def.fireFlipbooks, [&](FwFlipbookId id) {
+            return id.index1 == 0 || flipbooks_.get(id).emits;
+        });
+    books.other =
+        pack(def.smokeFlipbooks, "FwFireEmitterDef::smokeFlipbooks", flipbook::Kind::Smoke);
     books.spark =
         flipbookByte(def.sparkFlipbook, "FwFireEmitterDef::sparkFlipbook", flipbook::Kind::Spark);
     return books;

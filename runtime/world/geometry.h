@@ -40,6 +40,22 @@ template <class Touch, size_t N, class Id>
     return free;
 }
 
+// Of what an exchange sees: all are unseen before it, and what stayed so goes after it.
+template <class Touches>
+void beginTouches(Touches& touches) noexcept {
+    for (auto& one : touches) one.seen = false;
+}
+template <class Touches>
+void endTouches(Touches& touches) noexcept {
+    for (auto& one : touches)
+        if (!one.seen) one.object = {};
+}
+template <class Entries, class Id>
+void forgetIn(Entries& entries, const Id& object) noexcept {  // an object that goes
+    for (auto& one : entries)
+        if (one.object.index1 == object.index1) one = {};
+}
+
 // m, object space: a texel at rest, and the middle of a mesh's box.
 inline void restPlace(const mesh::BurnDomain& domain, uint32_t texel, float (&out)[3]) noexcept {
     FW_ASSERT(texel < domain.texels.size(), "texel %u of %zu", texel, domain.texels.size());

@@ -14,7 +14,7 @@ constexpr float kSmooth = 0.2f;    // share of a new measurement
 constexpr float kJump = 0.3f;      // a cost that is so far from the smooth one is another load ...
 constexpr float kMaxSaves = 3.0f;  // of a single level
 
-float unpackBendShare(const FrameCost& limit, const FrameCost& cost) noexcept {
+float shareOf(const FrameCost& limit, const FrameCost& cost) noexcept {
     return std::max({limit.gpu > 0 ? cost.gpu / limit.gpu : 0.0f,
                      limit.cpu > 0 ? cost.cpu / limit.cpu : 0.0f,
                      limit.bytes > 0 ? float(cost.bytes / limit.bytes) : 0.0f});
@@ -74,11 +74,11 @@ void govern(const FrameCost& limit, const FrameCost& spent, Governor& g) noexcep
         --g.wait;
         return;
     }
-    const float now = unpackBendShare(limit, spent);
+    const float now = shareOf(limit, spent);
     follow(spent.gpu, g.seen, g.cost.gpu);
     follow(spent.cpu, g.seen, g.cost.cpu);
     follow(spent.bytes, g.seen, g.cost.bytes);
-    const float share = unpackBendShare(limit, g.cost);
+    const float share = shareOf(limit, g.cost);
     g.overSum = now > kOver ? (g.over > 0 ? g.overSum : 0) + now : 0;
     g.over = now > kOver ? g.over + 1 : 0;
     if (g.seen < kDetailOverFrames) {

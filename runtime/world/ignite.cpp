@@ -20,14 +20,6 @@ using components::checkValue;
 
 constexpr float kWholeWorld = 4 * 4e6f;  // m: a search of a quarter of it finds every object
 
-// m, between a point and an object's surface: first to its box, which is cheap, then to its texels.
-struct Nearest {
-    const Object* object = nullptr;
-    float metres = 0;
-
-    [[nodiscard]] bool beats(float distance) const noexcept { return object && metres <= distance; }
-};
-
 double threeDigits(float metres) noexcept {
     const double step = std::pow(10, std::floor(std::log10(std::max(double(metres), 1e-9))) - 2);
     return std::round(double(metres) / step) * step;
@@ -102,20 +94,22 @@ void BurnSystem::explainMiss(const FwIgnitionDef& def, uint32_t texels,
             ball, texels);
         return;
     }
-    Nearest nearest;
+    const Object* nearest = nullptr;
+    float metres = INFINITY;
+    // First to its box, which is cheap, then to its texels.
     const auto meet = [&](const Object& object) {
         float point[3];
         components::toObject(object.data.pose, at, point);
         const components::Pose& pose = object.data.pose;
         if (!object.skinMoved &&
-            nearest.beats(distanceToBox(point, scene_.domainOf(object)) * shortestAxis(pose)))
+            metres <= distanceToBox(point, scene_.domainOf(object)) * shortestAxis(pose))
             return;
         const uint32_t texel = scene_.nearestTexel(object, point, 1e18f);
         if (texel == mesh::kNone) return;
         float place[3];
         scene_.texelPosition(object, texel, place);
-        const float metres = std::sqrt(squaredDistance(place, at));
-        if (!nearest.beats(metres)) nearest = {&object, metres};
+        const float away = std::sqrt(squaredDistance(place, at));
+        if (away < metres) nearest = &object, metres = away;
     };
     if (def.object.index1 != 0) meet(**scene_.objects.find(def.object));
     // Searches that grow until one reaches as far as the nearest: a miss costs no look at all
@@ -125,9 +119,9 @@ void BurnSystem::explainMiss(const FwIgnitionDef& def, uint32_t texels,
         for (const uint32_t slot : scene_.objectsNear(at, reach))
             if (const Object& object = scene_.objectAt(slot); !object.skinMoved || reach == first)
                 meet(object);
-        if (nearest.beats(reach)) break;
+        if (metres <= reach) break;
     }
-    if (!nearest.object)
+    if (!nearest)
         std::snprintf(text.data(), text.size(),
                       "%s reaches nothing: the world has no burnable mesh.", ball);
     else
@@ -135,7 +129,7 @@ void BurnSystem::explainMiss(const FwIgnitionDef& def, uint32_t texels,
                       "%s reaches nothing: the nearest burnable mesh, %u, is " FW_LENGTH
                       " " FW_LENGTH_UNIT
                       " away. Move the ball there, or give it a radius of that much.",
-                      ball, nearest.object->id.index1, threeDigits(nearest.metres));
+                      ball, nearest->id.index1, threeDigits(metres));
 }
 
 uint32_t BurnSystem::eventTick(float delay) const {

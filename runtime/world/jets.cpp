@@ -91,16 +91,13 @@ float halfAngle(const FireEmitter& emitter) noexcept { return emitter.look.cone 
 
 void jetRays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
     const vec3 along = volume::vecOf(emitter.direction);
-    const vec3 across = std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
-    vec3 r(along.y * across.z - along.z * across.y, along.z * across.x - along.x * across.z,
-           along.x * across.y - along.y * across.x);
-    r /= std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z);
-    const vec3 u(r.y * along.z - r.z * along.y, r.z * along.x - r.x * along.z,
-                 r.x * along.y - r.y * along.x);
+    vec3 r = glm::cross(along, std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0));
+    r /= glm::length(r);
+    const vec3 u = glm::cross(r, along);
     const float wide = halfAngle(emitter);
     for (uint32_t i = 0; i < kRays; ++i) {
         vec3 way = along + r * (kPattern[i][0] * wide) + u * (kPattern[i][1] * wide);
-        way /= std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+        way /= glm::length(way);
         for (int k = 0; k < 3; ++k) ways[i][k] = way[k];
     }
 }
@@ -111,17 +108,24 @@ bool alike(const mesh::BurnDomain& domain, uint32_t a, uint32_t b) noexcept {  /
     return int64_t(n.x) * m.x + int64_t(n.y) * m.y + int64_t(n.z) * m.z > 0;
 }
 
+// m^2 in the world from a point in object space to a texel at rest.
+float squaredToTexel(const components::Pose& pose, const mesh::BurnDomain& domain, uint32_t texel,
+                     const float point[3]) noexcept {
+    float place[3], sum = 0;
+    restPlace(domain, texel, place);
+    for (int i = 0; i < 3; ++i) {
+        const float d = (place[i] - point[i]) * pose.stretch[i] * pose.scale;
+        sum += d * d;
+    }
+    return sum;
+}
+
 // Is a texel on the gate's side of its mesh, and within `far` m of it?
 bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, uint32_t gate,
                 uint32_t texel, float far) noexcept {
-    float a[3], b[3], sum = 0;
-    restPlace(domain, gate, a);
-    restPlace(domain, texel, b);
-    for (int i = 0; i < 3; ++i) {
-        const float d = (a[i] - b[i]) * pose.stretch[i] * pose.scale;
-        sum += d * d;
-    }
-    return sum < far * far && alike(domain, gate, texel);
+    float place[3];
+    restPlace(domain, gate, place);
+    return squaredToTexel(pose, domain, texel, place) < far * far && alike(domain, gate, texel);
 }
 
 // m over which power is spread that is no more than the least wide takes.
@@ -211,16 +215,14 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
                 hit.object = object.id;
                 hit.texel = found;
                 const gpu::ivec3 n = gpu::decodeNormal(domain.normals[found]);
-                float sign = 0, world[3];
-                for (int k = 0; k < 3; ++k) {
+                vec3 world;
+                for (int k = 0; k < 3; ++k)
                     world[k] = pose.rotation[k][0] * float(n.x) + pose.rotation[k][1] * float(n.y) +
                                pose.rotation[k][2] * float(n.z);
-                    sign += world[k] * way[k];
-                }
-                const float turn = sign > 0 ? -1.0f : 1.0f;  // towards where it came from
-                const float size =
-                    std::sqrt(world[0] * world[0] + world[1] * world[1] + world[2] * world[2]);
-                normal = size > 0 ? vec3(world[0], world[1], world[2]) * (turn / size) : -along;
+                // Towards where it came from.
+                const float turn = glm::dot(world, along) > 0 ? -1.0f : 1.0f;
+                const float size = glm::length(world);
+                normal = size > 0 ? world * (turn / size) : -along;
                 break;
             }
             at += std::max(distance - 0.5f * close, 0.4f * close);
@@ -278,15 +280,11 @@ void EmitterSystem::updateJetObstacles(FireEmitter& emitter, double now) noexcep
 }
 
 void EmitterSystem::forgetObject(const Object& object) noexcept {
-    const auto forget = [&](auto& entries) {
-        for (auto& entry : entries)
-            if (entry.object.index1 == object.id.index1) entry = {};
-    };
     for (auto [i, emitter] : emitters_.entries()) {
-        forget(emitter.touches);
+        forgetIn(emitter.touches, object.id);
         if (!emitter.stream) continue;
-        forget(emitter.stream->patches);
-        forget(emitter.stream->before);
+        forgetIn(emitter.stream->patches, object.id);
+        forgetIn(emitter.stream->before, object.id);
         for (JetParcel& parcel : emitter.stream->parcels)
             for (JetRay& ray : parcel.rays) {
                 if (ray.hit.object.index1 == object.id.index1) ray.hit = {};
@@ -330,8 +328,14 @@ void EmitterSystem::listProbes() noexcept {
 // flies on, and another parcel leaves. A frame that failed may come again: then so does all of it.
 void EmitterSystem::beginExchanges(uint32_t first) noexcept {
     if (emitters_.live() > 0) flames_.listShapes();
-    for (auto [i, emitter] : emitters_.entries())
-        if (emitter.stream) settlePatches(emitter, first);
+    for (auto [i, emitter] : emitters_.entries()) {
+        if (!emitter.stream) continue;
+        components::JetStream& stream = *emitter.stream;
+        if (stream.patchedAt >= first && first > 0)
+            stream.patches = stream.before;
+        else
+            stream.before = stream.patches;
+    }
 }
 
 void EmitterSystem::heatObjects(uint32_t now) {
@@ -341,7 +345,7 @@ void EmitterSystem::heatObjects(uint32_t now) {
 
 void EmitterSystem::heatObjects(FireEmitter& emitter, uint32_t now) {
     emitter.heated = 0;
-    for (components::JetTouch& touch : emitter.touches) touch.seen = false;
+    beginTouches(emitter.touches);
     burnPatches(emitter, now);
     if (emitter.def.power > 0) {
         sweepJets(emitter);
@@ -352,8 +356,7 @@ void EmitterSystem::heatObjects(FireEmitter& emitter, uint32_t now) {
         if (parcel.launched <= now &&
             now - parcel.launched < components::kJetParcels * gpu::kExchangeTicks)
             flyJet(emitter, parcel, now);
-    for (components::JetTouch& touch : emitter.touches)
-        if (!touch.seen) touch.object = {};
+    endTouches(emitter.touches);
 }
 
 void EmitterSystem::launchJet(const FireEmitter& emitter, JetParcel& parcel,
@@ -463,14 +466,8 @@ void EmitterSystem::findFootprint(const Object& object, const JetHit& hit, float
     scene_.found.clear();
     mesh::texelsNear(domain, point, radius / least, scene_.found);
     std::erase_if(scene_.found, [&](uint32_t texel) {
-        if (!alike(domain, texel, hit.texel)) return true;
-        float place[3], sum = 0;
-        restPlace(domain, texel, place);
-        for (int i = 0; i < 3; ++i) {
-            const float d = (place[i] - point[i]) * pose.stretch[i] * pose.scale;
-            sum += d * d;
-        }
-        return sum > radius * radius;
+        return !alike(domain, texel, hit.texel) ||
+               squaredToTexel(pose, domain, texel, point) > radius * radius;
     });
     if (scene_.found.empty()) scene_.found.push_back(hit.texel);
 }
@@ -486,9 +483,8 @@ void EmitterSystem::heatByJet(FireEmitter& emitter, const JetParcel& parcel, con
     const float radius = footprintRadius(0.10f + 0.35f * hit.distance * parcel.wide, watts);
     const bool sure = ray.gateCount == 0;  // to get here
     if (!components::hasHeat(object.data)) {
-        if (!sure) return;  // it catches by our count alone, and we know of no hole
-        emitter.heated += watts;
-        heatStepThin(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), tick);
+        if (sure)  // else it would catch by our count alone, and we know of no hole
+            heatStepThin(emitter, object, hit, radius, watts, tick);
         return;
     }
     const uint64_t power = brought + (sure ? emitter.stream->kept : 0);
@@ -586,15 +582,6 @@ uint64_t EmitterSystem::attachFuel(FireEmitter& emitter, const JetHit& hit,
     return components::feedPatch(*patch, fuel, std::max(exchanges, 1u));
 }
 
-// Before the exchanges of a frame, the first of them at tick `first`.
-void EmitterSystem::settlePatches(FireEmitter& emitter, uint32_t first) noexcept {
-    components::JetStream& stream = *emitter.stream;
-    if (stream.patchedAt >= first && first > 0)
-        stream.patches = stream.before;
-    else
-        stream.before = stream.patches;
-}
-
 void EmitterSystem::burnPatches(FireEmitter& emitter, uint32_t now) {
     components::JetStream& stream = *emitter.stream;
     stream.patchedAt = now;
@@ -623,9 +610,7 @@ void EmitterSystem::burnPatches(FireEmitter& emitter, uint32_t now) {
         const float watts = float(power) / kNano;
         const float radius = footprintRadius(components::kPatchRadius, watts);
         if (!components::hasHeat(object.data)) {
-            heatStepThin(emitter, object, hit, radius, watts / (3.14159265f * radius * radius),
-                         now);
-            emitter.heated += watts;
+            heatStepThin(emitter, object, hit, radius, watts, now);
             continue;
         }
         uint64_t left = 0;
@@ -658,21 +643,16 @@ void EmitterSystem::wetPatches(std::span<const Splash> splashes, bool records) n
 
 // An object without heat catches after the time that its material takes.
 void EmitterSystem::heatStepThin(FireEmitter& emitter, Object& object, const JetHit& hit,
-                                 float radius, float flux, uint32_t now) {
+                                 float radius, float watts, uint32_t now) {
+    emitter.heated += watts;
     const uint32_t material = scene_.texelMaterial(object, hit.texel);
     if (!components::burns(object.data, material)) return;
     components::JetTouch* touch = touchOf(emitter.touches, object.id);
     if (!touch) return;
-    if (touch->object.index1 == 0) {
-        *touch = {};
-        touch->object = object.id;
-        touch->since = now;
-    }
+    if (touch->object.index1 == 0) *touch = {object.id, now};
     touch->seen = true;
-    const FwMaterialDef& of = object.data.materials[material];
-    if (now - touch->since <
-        ticksToCatch(of, of.moisture + object.data.moisture, context_.def.paceFactor, double(flux)))
-        return;
+    const float flux = watts / (3.14159265f * radius * radius);
+    if (now - touch->since < burn_.ticksToCatch(object, material, double(flux))) return;
     FwIgnitionDef def{};
     def.kind = FW_IGNITE;
     std::copy_n(hit.place, 3, def.position);

@@ -8,12 +8,34 @@
 
 namespace fw::world {
 
-void BurnSystem::addLatch(Object& object, const components::Latch& latch, bool due) noexcept {
+void BurnSystem::addLatch(Object& object, const components::Latch& latch) noexcept {
     object.planStamp = state_.planStamp;
     object.latchIndex = frame_.latches.size();
     FW_ASSERT(frame_.latches.size() < frame_.latches.capacity(), "%zu latches",
               frame_.latches.size());
-    frame_.latches.push_back({&object, latch, due});
+    frame_.latches.push_back({&object, latch});
+}
+
+// As if the wind that blows now had always blown.
+void BurnSystem::addFreshLatch(Object& object, uint32_t now) noexcept {
+    components::Latch latch = object.latch;
+    components::resetLatch(object.data, wind_.driveInput(object, now), latch);
+    latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
+    addLatch(object, latch);
+    frame_.latches.back().due = true;
+}
+
+void BurnSystem::sendRecords(Frame::LatchOf& entry, const components::DriveInput& drive) {
+    const Object& object = *entry.object;
+    const components::Records records =
+        components::makeRecords(object.data, scene_.domainOf(object), drive, entry.latch);
+    gpu::MaterialUpdate update;
+    update.object = object.slot;
+    std::copy(records.materials.begin(), records.materials.end(), update.materials);
+    update.window = records.timing.window;
+    update.substepShift = records.timing.substepShift;
+    frame_.updates.push_back(update);
+    entry.latch.sent = true;
 }
 
 // Whether other records change anything of an object that no event addresses. A readback may be
@@ -28,37 +50,17 @@ bool BurnSystem::needsRecords(const Object& object, uint32_t now) const noexcept
 }
 
 void BurnSystem::planLatches(uint32_t now, size_t firstEvent, bool placed) {
-    const auto sendRecords = [&](Object& object, const components::DriveInput& drive,
-                                 components::Latch& latch) {
-        const components::Records records =
-            components::makeRecords(object.data, scene_.domainOf(object), drive, latch);
-        gpu::MaterialUpdate update;
-        update.object = object.slot;
-        std::copy(records.materials.begin(), records.materials.end(), update.materials);
-        update.window = records.timing.window;
-        update.substepShift = records.timing.substepShift;
-        frame_.updates.push_back(update);
-        latch.sent = true;
-    };
     // Objects whose first event is in this step, or whose latch was held back while they slept.
     for (size_t i = firstEvent; i < frame_.events.size(); ++i) {
         const uint32_t slot = frame_.events[i].object;
         if (i > firstEvent && frame_.events[i - 1].object == slot) continue;
         Object& object = scene_.objectAt(slot);
-        if (object.planStamp == state_.planStamp) {
-            FW_ASSERT(object.latchIndex < frame_.latches.size(), "%zu of %zu latches",
-                      object.latchIndex, frame_.latches.size());
-            Frame::LatchOf& known = frame_.latches[object.latchIndex];
-            known.due = true;
-            if (!known.latch.sent) sendRecords(object, wind_.driveInput(object, now), known.latch);
-            continue;
-        }
-        components::Latch latch = object.latch;
-        const components::DriveInput drive = wind_.driveInput(object, now);
-        components::resetLatch(object.data, drive, latch);
-        latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
-        if (!latch.sent) sendRecords(object, drive, latch);
-        addLatch(object, latch, true);
+        if (object.planStamp != state_.planStamp) addFreshLatch(object, now);
+        FW_ASSERT(object.latchIndex < frame_.latches.size(), "%zu of %zu latches",
+                  object.latchIndex, frame_.latches.size());
+        Frame::LatchOf& entry = frame_.latches[object.latchIndex];
+        entry.due = true;
+        if (!entry.latch.sent) sendRecords(entry, wind_.driveInput(object, now));
     }
     const bool fresh = firstEvent < frame_.events.size();
     if (fresh && !exchange_.isOn()) exchange_.forgetSpread();
@@ -67,8 +69,7 @@ void BurnSystem::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         // Nobody knows which of them the fire reaches first.
         if (fresh || placed)
             for (Frame::LatchOf& entry : frame_.latches)
-                if (!entry.latch.sent)
-                    sendRecords(*entry.object, wind_.driveInput(*entry.object, now), entry.latch);
+                if (!entry.latch.sent) sendRecords(entry, wind_.driveInput(*entry.object, now));
     }
     // While anything burns or is hot, any of them may be next.
     const bool anyActive = exchange_.isOn() && (fresh || !state_.idle);
@@ -80,8 +81,7 @@ void BurnSystem::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;
         turnPlay(object);
-        if (needsRecords(object, now) || entry.due || anyActive)
-            sendRecords(object, drive, entry.latch);
+        if (needsRecords(object, now) || entry.due || anyActive) sendRecords(entry, drive);
     }
 }
 
@@ -90,15 +90,11 @@ void BurnSystem::planLatches(uint32_t now, size_t firstEvent, bool placed) {
 void BurnSystem::touchNear(uint32_t now) {
     const auto add = [&](uint32_t slot) {
         auto* owned = scene_.objects.at(slot);
-        if (!owned || (*owned)->planStamp == state_.planStamp || (*owned)->touched) return;
-        Object& object = **owned;
-        components::Latch latch = object.latch;
-        components::resetLatch(object.data, wind_.driveInput(object, now), latch);
-        latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
-        addLatch(object, latch, true);
+        if (owned && (*owned)->planStamp != state_.planStamp && !(*owned)->touched)
+            addFreshLatch(**owned, now);
     };
     if (exchange_.transfer().flags & FW_WORLD_EMBERS) {
-        for (const uint32_t slot : exchange_.transfer().waiting) add(slot);
+        for (const uint32_t slot : exchange_.transfer().waiting.slots()) add(slot);
         frame_.waitersTouched = true;
         return;
     }

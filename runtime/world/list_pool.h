@@ -1,5 +1,5 @@
-// Lists of their own for many owners, in one array that a backend keeps a copy of. A list that
-// outgrows its place moves to a larger one; places that are left are given out again.
+// A list for each slot, all in one array that a backend keeps a copy of. A list that outgrows its
+// place moves to a larger one; places that are left are given out again.
 #pragma once
 #include "core/growth.h"
 #include "gpu/backend.h"
@@ -24,59 +24,52 @@ class ListPool {
  public:
     // none: what the entries are that belong to no list.
     ListPool(std::pmr::memory_resource* memory, const T& none)
-        : all_(memory), sizes_(memory), changed_(memory), none_(none) {}
+        : all_(memory), lists_(memory), sizes_(memory), changed_(memory), none_(none) {}
 
-    [[nodiscard]] std::span<T> of(const ListPlace& list) noexcept {
-        return std::span(all_).subspan(list.first, list.count);
+    // Empty lists for all slots up to a number; throws std::bad_alloc.
+    void addLists(size_t slots) {
+        if (slots <= lists_.size()) return;
+        core::growTo(lists_, slots);
+        lists_.resize(slots);
     }
-    [[nodiscard]] std::span<const T> of(const ListPlace& list) const noexcept {
+    [[nodiscard]] size_t lists() const noexcept { return lists_.size(); }
+    [[nodiscard]] ListPlace placeOf(uint32_t slot) const noexcept {
+        return slot < lists_.size() ? lists_[slot] : ListPlace{};
+    }
+    [[nodiscard]] std::span<const T> of(uint32_t slot) const noexcept {
+        const ListPlace list = placeOf(slot);
         return std::span(all_).subspan(list.first, list.count);
     }
     [[nodiscard]] std::span<const T> all() const noexcept { return all_; }
+    // Where an entry is in a sorted list, or belongs.
+    template <class Key>
+    [[nodiscard]] uint32_t indexOf(uint32_t slot, uint32_t key, const Key& keyOf) const noexcept {
+        const std::span<const T> list = of(slot);
+        return uint32_t(std::ranges::lower_bound(list, key, {}, keyOf) - list.begin());
+    }
 
     // Room for `count` entries; throws std::bad_alloc, and then nothing has changed.
-    void reserve(ListPlace& list, uint32_t count) {
-        if (count <= list.room) return;
-        const uint32_t size = sizeOf(count), room = roomOf(size);
-        while (sizes_.size() <= size) sizes_.emplace_back();
-        Size& of = sizes_[size];
-        uint32_t first = 0;
-        if (of.free.empty()) {
-            core::growTo(of.free, of.made + 1);  // giving the place back needs no memory
-            first = uint32_t(all_.size());
-            changed_.resize(((all_.size() + room) / kBlock + 64) / 64);
-            all_.resize(all_.size() + room, none_);
-            ++of.made;
-        } else {
-            first = of.free.back();
-            of.free.pop_back();
-        }
-        std::copy_n(all_.begin() + list.first, list.count, all_.begin() + first);
-        mark(first, room);
-        release(list);
-        list.first = first;
-        list.room = room;
+    void reserve(uint32_t slot, uint32_t count) {
+        if (count > lists_[slot].room) move(lists_[slot], sizeOf(count));
     }
     // A list that has shrunk moves to a smaller place, so that the pool holds what lists have and
     // not the most that each had. Throws std::bad_alloc, and then nothing has changed.
-    void fit(ListPlace& list) {
-        if (list.room == 0) return;
-        if (list.count == 0) return drop(list);
-        if (sizeOf(list.count) >= sizeOf(list.room)) return;
-        ListPlace smaller;
-        reserve(smaller, list.count);
-        std::copy_n(all_.begin() + list.first, list.count, all_.begin() + smaller.first);
-        smaller.count = list.count;
-        drop(list);
-        list = smaller;
+    void fit(uint32_t slot) {
+        ListPlace& list = lists_[slot];
+        if (list.count == 0)
+            drop(slot);
+        else if (sizeOf(list.count) < sizeOf(list.room))
+            move(list, sizeOf(list.count));
     }
     // The place goes, and the entries with it.
-    void drop(ListPlace& list) noexcept {
-        release(list);
-        list = {};
+    void drop(uint32_t slot) noexcept {
+        if (slot >= lists_.size()) return;
+        release(lists_[slot]);
+        lists_[slot] = {};
     }
     // Before entry `at`, where reserve has found room.
-    void insert(ListPlace& list, uint32_t at, const T& value) noexcept {
+    void insert(uint32_t slot, uint32_t at, const T& value) noexcept {
+        ListPlace& list = lists_[slot];
         FW_ASSERT(list.count < list.room && at <= list.count, "entry %u of %u", at, list.count);
         T* data = all_.data() + list.first;
         std::memmove(data + at + 1, data + at, (list.count - at) * sizeof(T));
@@ -84,16 +77,33 @@ class ListPool {
         ++list.count;
         mark(list.first + at, list.count - at);
     }
-    void erase(ListPlace& list, uint32_t at) noexcept {
+    void set(uint32_t slot, uint32_t at, const T& value) noexcept {
+        FW_ASSERT(at < lists_[slot].count, "entry %u of %u", at, lists_[slot].count);
+        all_[lists_[slot].first + at] = value;
+        mark(lists_[slot].first + at, 1);
+    }
+    void erase(uint32_t slot, uint32_t at) noexcept {
+        ListPlace& list = lists_[slot];
         FW_ASSERT(at < list.count, "entry %u of %u", at, list.count);
         T* data = all_.data() + list.first;
         std::memmove(data + at, data + at + 1, (list.count - at - 1) * sizeof(T));
         mark(list.first + at, list.count - at);
         data[--list.count] = none_;
     }
-    // Other entries, for which reserve has found room.
-    void assign(ListPlace& list, std::span<const T> values) noexcept {
-        FW_ASSERT(values.size() <= list.room, "%zu entries in %u", values.size(), list.room);
+    template <class Goes>
+    void eraseIf(uint32_t slot, const Goes& goes) noexcept {
+        ListPlace& list = lists_[slot];
+        const auto begin = all_.begin() + list.first, end = begin + list.count;
+        const auto kept = std::remove_if(begin, end, goes);
+        if (kept == end) return;
+        std::fill(kept, end, none_);
+        mark(list.first, list.count);
+        list.count = uint32_t(kept - begin);
+    }
+    // Throws std::bad_alloc, and then nothing has changed.
+    void assign(uint32_t slot, std::span<const T> values) {
+        reserve(slot, uint32_t(values.size()));
+        ListPlace& list = lists_[slot];
         T* data = all_.data() + list.first;
         mark(list.first, std::max(list.count, uint32_t(values.size())));
         std::fill_n(data, list.count, none_);
@@ -103,20 +113,13 @@ class ListPool {
     void clear() noexcept {
         all_.clear();
         changed_.clear();
+        std::fill(lists_.begin(), lists_.end(), ListPlace{});
         for (Size& size : sizes_) {
             size.free.clear();
             size.made = 0;
         }
     }
 
-    // Marks entries as changed since `settle`. A caller that writes into a list calls it.
-    void mark(uint32_t first, uint32_t count) noexcept {
-        if (count == 0) return;
-        FW_ASSERT(uint64_t(first) + count <= all_.size(), "%u and %u more of %zu", first, count,
-                  all_.size());
-        for (uint32_t block = first / kBlock; block <= (first + count - 1) / kBlock; ++block)
-            changed_[block / 64] |= uint64_t(1) << block % 64;
-    }
     void listChanges(std::pmr::vector<gpu::ExchangeUpdate::Range>& out) const {
         out.clear();
         for (uint32_t word = 0; word < changed_.size(); ++word)
@@ -132,7 +135,7 @@ class ListPool {
     void settle() noexcept { std::fill(changed_.begin(), changed_.end(), 0); }
 
     [[nodiscard]] uint64_t bytes() const noexcept {
-        uint64_t sum = all_.capacity() * sizeof(T);
+        uint64_t sum = all_.capacity() * sizeof(T) + lists_.capacity() * sizeof(ListPlace);
         for (const Size& size : sizes_) sum += size.free.capacity() * sizeof(uint32_t);
         return sum;
     }
@@ -157,6 +160,35 @@ class ListPool {
         while (roomOf(size) < count) ++size;
         return size;
     }
+    // Marks entries as changed since `settle`.
+    void mark(uint32_t first, uint32_t count) noexcept {
+        if (count == 0) return;
+        FW_ASSERT(uint64_t(first) + count <= all_.size(), "%u and %u more of %zu", first, count,
+                  all_.size());
+        for (uint32_t block = first / kBlock; block <= (first + count - 1) / kBlock; ++block)
+            changed_[block / 64] |= uint64_t(1) << block % 64;
+    }
+    void move(ListPlace& list, uint32_t size) {
+        const uint32_t room = roomOf(size);
+        while (sizes_.size() <= size) sizes_.emplace_back();
+        Size& of = sizes_[size];
+        uint32_t first = 0;
+        if (of.free.empty()) {
+            core::growTo(of.free, of.made + 1);  // giving the place back needs no memory
+            first = uint32_t(all_.size());
+            changed_.resize(((all_.size() + room) / kBlock + 64) / 64);
+            all_.resize(all_.size() + room, none_);
+            ++of.made;
+        } else {
+            first = of.free.back();
+            of.free.pop_back();
+        }
+        std::copy_n(all_.begin() + list.first, list.count, all_.begin() + first);
+        mark(first, room);
+        release(list);
+        list.first = first;
+        list.room = room;
+    }
     void release(const ListPlace& list) noexcept {
         if (list.room == 0) return;
         FW_ASSERT(sizeOf(list.room) < sizes_.size(), "a place of %u", list.room);
@@ -166,6 +198,7 @@ class ListPool {
     }
 
     std::pmr::vector<T> all_;
+    std::pmr::vector<ListPlace> lists_;  // by slot
     std::pmr::vector<Size> sizes_;
     std::pmr::vector<uint64_t> changed_;  // a bit a block
     T none_;

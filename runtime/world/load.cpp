@@ -148,9 +148,8 @@ BurnRecords PersistenceSystem::recordsOf(const Snapshot& saved, const ObjectSnap
     const mesh::BurnDomain& domain = scene_.domainOf(object);
     components::DriveInput drive = world_.wind_.driveInput(object, context_.clock.tick);
     const WindSnapshot& wind = saved.wind;
-    drive.wind =
-        windOf({fire::windUnits(wind.wind), wind.grid, wind.gusts, wind.ordered, context_.def.seed},
-               windPlaceOf(from.pose, domain), saved.clock.tick);
+    drive.wind = windOf(wind, wind.gusts, wind.ordered, context_.def.seed,
+                        windPlaceOf(from.pose, domain), saved.clock.tick);
     components::BurnableMesh posed = object.data;
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);

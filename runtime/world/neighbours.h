@@ -4,6 +4,7 @@
 #pragma once
 #include "world/box_grid.h"
 #include "world/list_pool.h"
+#include "world/slot_set.h"
 
 namespace fw::world {
 
@@ -12,30 +13,21 @@ class Neighbours {
     static constexpr uint32_t kSlot = 0xFFFFFFu;  // of an entry; above: what is seen of it, of 255
 
     explicit Neighbours(std::pmr::memory_resource* memory)
-        : grid_(memory),
-          pool_(memory, 0u),
-          lists_(memory),
-          marks_(memory),
-          changed_(memory),
-          isChanged_(memory),
-          added_(memory) {}
+        : grid_(memory), pool_(memory, 0u), marks_(memory), changed_(memory), added_(memory) {}
 
     // An object that is new or elsewhere. Throws std::bad_alloc; then only `clear` mends it.
     void place(uint32_t slot, const mesh::Box& box, uint32_t reach);
     void remove(uint32_t slot) noexcept;
     void clear() noexcept;
 
-    [[nodiscard]] ListPlace listOf(uint32_t slot) const noexcept {
-        return slot < lists_.size() ? lists_[slot] : ListPlace{};
-    }
     [[nodiscard]] std::span<const uint32_t> of(uint32_t slot) const noexcept {
-        return pool_.of(listOf(slot));
+        return pool_.of(slot);
     }
     // Sets the part of `slot` that a fire of its neighbour `other` sees, of 255.
     void see(uint32_t slot, uint32_t other, uint32_t part) noexcept;
 
     // Lists that have changed since `settle`, in no order.
-    [[nodiscard]] std::span<const uint32_t> changed() const noexcept { return changed_; }
+    [[nodiscard]] std::span<const uint32_t> changed() const noexcept { return changed_.slots(); }
     void settle() noexcept;
 
     [[nodiscard]] const ListPool<uint32_t>& pool() const noexcept { return pool_; }
@@ -46,15 +38,12 @@ class Neighbours {
  private:
     void add(uint32_t slot, uint32_t other) noexcept;   // other to the list of slot
     void take(uint32_t slot, uint32_t other) noexcept;  // and from it
-    void note(uint32_t slot) noexcept;                  // it has changed
 
     BoxGrid grid_;
     ListPool<uint32_t> pool_;
-    std::pmr::vector<ListPlace> lists_;    // by slot
-    std::pmr::vector<uint64_t> marks_;     // by slot: of the object that was placed last
-    std::pmr::vector<uint32_t> changed_;   // room for all slots
-    std::pmr::vector<uint8_t> isChanged_;  // by slot
-    std::pmr::vector<uint32_t> added_;     // scratch
+    std::pmr::vector<uint64_t> marks_;  // by slot: of the object that was placed last
+    SlotSet changed_;
+    std::pmr::vector<uint32_t> added_;  // scratch
     uint64_t mark_ = 0;
 };
 

@@ -184,9 +184,6 @@ struct Object : ObjectState {
     uint64_t planStamp = 0;        // of the plan whose latches hold it
     size_t latchIndex = 0;         // in the latches of that plan
     uint64_t sleepsUnder = 0;      // WindSystem::changes + 1 under which its latch rests; 0: none
-    bool exchangeSent = true;      // the backend has the latched record; else it is in unsentSlots
-    bool contactsDue = false;      // it is in TransferState::contactsDue
-    bool seenDue = false;          // it is in TransferState::seenDue
     uint32_t room1 = 0;            // slot + 1 of the room that it is in; 0: none
     // As of the last readback.
     uint64_t countersFrame = 0;
@@ -201,9 +198,5 @@ struct Object : ObjectState {
     std::pmr::vector<float> skin, skinNormals;
     bool skinMoved = false;  // else they are at rest
 };
-
-// Piloted ignition under `flux` W/m^2: thick or thin, whichever is sooner.
-uint64_t ticksToCatch(const FwMaterialDef& material, float moisture, float pace,
-                      double flux) noexcept;
 
 }  // namespace fw::world

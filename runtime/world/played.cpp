@@ -204,16 +204,13 @@ size_t BurnSystem::beginPlays(uint64_t end) {
 }
 
 // Adds the events of a step. `due`: all other events of that step, by object.
-void BurnSystem::planPlays(uint32_t now, std::span<const Frame::Due> due) {
+void BurnSystem::planPlays(uint32_t now, std::span<const PendingTexel> due) {
     const uint32_t end = now + gpu::kStepTicks;
     for (Frame::PlayOf& entry : frame_.plays) {
         Play& play = entry.play;
         if (play.burn1 == 0) continue;
         const uint32_t slot = entry.object->slot;
-        const auto other = std::lower_bound(
-            due.begin(), due.end(), slot,
-            [](const Frame::Due& one, uint32_t s) { return one.event.object < s; });
-        const bool disturbed = other != due.end() && other->event.object == slot;
+        const bool disturbed = std::ranges::binary_search(due, slot, {}, &PendingTexel::object);
         const auto push = [&](uint32_t texel, uint32_t kind, uint32_t tick) {
             frame_.events.push_back({slot, texel, kind, tick});
         };

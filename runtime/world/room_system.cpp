@@ -1,7 +1,6 @@
 #include "world/room_system.h"
 
 #include "world/recording.h"
-#include "world/shift.h"
 #include "world/wind_system.h"
 
 #include <algorithm>
@@ -157,14 +156,6 @@ void RoomSystem::restore(const RoomSnapshot& from) noexcept {
 void RoomSystem::restoreObject(Object& object) noexcept {
     object.room1 = roomOf(object);
     state_.met |= object.counters.air != 0;
-}
-
-void RoomSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, room] : state_.rooms.entries()) checkMillimetres(room.room.middle, by, "room", i);
-}
-
-void RoomSystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto [i, room] : state_.rooms.entries()) moveMillimetres(room.room.middle, by);
 }
 
 }  // namespace fw::world

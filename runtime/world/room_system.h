@@ -55,9 +55,12 @@ class RoomSystem {
 
     // `burns`: something is hot or burns anywhere.
     void onReadback(const gpu::Readback& readback, bool burns) noexcept;
-    void onFrameDone(uint64_t stirred) noexcept;   // with the readback of a frame
-    void checkShift(const double (&by)[3]) const;  // throws
-    void shiftOrigin(const double (&by)[3]) noexcept;
+    void onFrameDone(uint64_t stirred) noexcept;  // with the readback of a frame
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, entry] : state_.rooms.entries()) visit(entry.room.middle, "room", i);
+    }
 
     [[nodiscard]] const RoomState& state() const noexcept { return state_; }
     [[nodiscard]] bool isSettled(uint64_t stirred) const noexcept;

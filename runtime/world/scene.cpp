@@ -442,14 +442,8 @@ void Scene::reserveSlots() {
     core::growTo(touched, objects.slotCount());
 }
 
-void Scene::checkShift(const double (&by)[3]) const {
-    for (auto [i, object] : objects.entries())
-        checkMoved(object.data.pose.translation, by, "burnable mesh", i);
-}
-
 void Scene::shiftOrigin(const double (&by)[3]) noexcept {
     for (auto [i, object] : objects.entries()) {
-        moveBy(object.data.pose.translation, by);
         movePast(object.latch.pose.translation, by);
         sendPose(object);
         placeNow(object);

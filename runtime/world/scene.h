@@ -87,8 +87,13 @@ class Scene {
     void countFuel(const Object& object, bool more) noexcept;
     void removeObject(const Object& object) noexcept;  // that goes
     void reserveSlots();                               // for an object more; throws std::bad_alloc
-    void shiftOrigin(const double (&by)[3]) noexcept;
-    void checkShift(const double (&by)[3]) const;  // throws
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, object] : objects.entries())
+            visit(object.data.pose.translation, "burnable mesh", i);
+    }
+    void shiftOrigin(const double (&by)[3]) noexcept;  // all else
 
     core::HandlePool<FwMaterialId, FwMaterialDef> materials;
     core::HandlePool<FwImageId, ImageEntry> images;

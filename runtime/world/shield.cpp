@@ -73,9 +73,7 @@ void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def, float units
 }
 
 void ExchangeSystem::adoptOcclusion(components::HeatOcclusion& made) noexcept {
-    shield_.grid.shape = made.shape;
-    shield_.grid.solid.swap(made.solid);
-    shield_.grid.baked.swap(made.baked);
+    shield_.grid = std::move(made);
     occlusionChanged();
 }
 

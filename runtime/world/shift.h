@@ -39,7 +39,7 @@ inline void movePast(int& millimetres, double metres) noexcept {
 }
 // Wraps where a load goes to an origin so far off that only its save has places there.
 template <class Whole>
-inline void moveMillimetres(std::array<Whole, 3>& place, const double (&by)[3]) noexcept {
+inline void moveBy(std::array<Whole, 3>& place, const double (&by)[3]) noexcept {
     using Wraps = std::make_unsigned_t<Whole>;
     for (size_t i = 0; i < 3; ++i) place[i] = Whole(Wraps(place[i]) + Wraps(int64_t(by[i] * 1000)));
 }
@@ -54,8 +54,8 @@ void checkMoved(const Place& place, const double (&by)[3], const char* what, uin
                          i, by[i], what, slot + 1, moved, kFar);
 }
 template <class Whole>
-void checkMillimetres(const std::array<Whole, 3>& place, const double (&by)[3], const char* what,
-                      uint32_t slot) {
+void checkMoved(const std::array<Whole, 3>& place, const double (&by)[3], const char* what,
+                uint32_t slot) {
     double metres[3];
     for (size_t i = 0; i < 3; ++i) metres[i] = double(place[i]) / 1000;
     checkMoved(metres, by, what, slot);

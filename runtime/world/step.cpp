@@ -26,20 +26,6 @@ bool BurnSystem::keepsAwake() const noexcept {
     return (context_.switches & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
 }
 
-// Events of the frame that ends at a tick, by step.
-void BurnSystem::listDue(uint64_t end) {
-    frame_.due.clear();
-    waitForTransfers();
-    const uint64_t now = context_.clock.tick;
-    for (const PendingTexel& event : state_.pending) {
-        if (event.tick >= end) continue;
-        const uint64_t at = std::max<uint64_t>(event.tick, now);
-        frame_.due.push_back({event, uint32_t((at - now) / gpu::kStepTicks)});
-        frame_.due.back().event.tick = uint32_t(at);  // never before its step
-    }
-    sortDue();
-}
-
 void BurnSystem::listLatches() noexcept {
     frame_.latches.clear();
     ++state_.planStamp;
@@ -54,22 +40,22 @@ void BurnSystem::listLatches() noexcept {
                 continue;
             }
         }
-        addLatch(*object, object->latch, false);
+        addLatch(*object, object->latch);
     }
     frame_.spreadFrom = frame_.latches.size();
     frame_.spreadFound = frame_.waitersTouched = false;
 }
 
-gpu::StepPlan BurnSystem::planStep(uint32_t step, size_t& nextDue, bool awake) {
-    const uint32_t now = uint32_t(context_.clock.tick) + step * gpu::kStepTicks;
+gpu::StepPlan BurnSystem::planStep(uint32_t now, size_t& nextDue, bool awake) {
     gpu::StepPlan plan;
     plan.now = now;
     plan.reduce = reducesAt(now);
     plan.heat = heatsAt(now);
     plan.rooms = plan.heat && rooms_.state().met;
     const size_t firstEvent = frame_.events.size(), firstDue = nextDue;
-    for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
-        const PendingTexel& event = frame_.due[nextDue].event;
+    for (; nextDue < frame_.due.size() && frame_.due[nextDue].tick < now + gpu::kStepTicks;
+         ++nextDue) {
+        const PendingTexel& event = frame_.due[nextDue];
         frame_.events.push_back(
             {event.object, event.texel, event.kind,
              event.kind == FW_WET || event.kind >= gpu::kEventHeat ? event.water : event.tick});
@@ -103,9 +89,17 @@ void BurnSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) {
     frame_.steps.clear();
     frame_.events.clear();
     frame_.updates.clear();
-    listDue(time.after.tick);
+    frame_.due.clear();
+    waitForTransfers();
+    const auto begin = uint32_t(context_.clock.tick);
     size_t gates = 0;
-    for (const Frame::Due& due : frame_.due) gates += due.event.gateCount;
+    for (const PendingTexel& event : state_.pending) {
+        if (event.tick >= time.after.tick) continue;
+        frame_.due.push_back(event);
+        frame_.due.back().tick = std::max(event.tick, begin);  // never before its step
+        gates += event.gateCount;
+    }
+    sortDue();
     const size_t plays = beginPlays(time.after.tick);
     // Spans into it must hold. An object that plays and is disturbed has one more.
     core::growTo(frame_.events, frame_.due.size() + gates + plays + frame_.plays.size());
@@ -117,7 +111,7 @@ void BurnSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) {
     size_t nextDue = 0;
     for (uint32_t step = 0; step < time.steps; ++step) {
         firstUpdate[step] = frame_.updates.size();
-        frame_.steps.push_back(planStep(step, nextDue, awake));
+        frame_.steps.push_back(planStep(begin + step * gpu::kStepTicks, nextDue, awake));
     }
     firstUpdate[time.steps] = frame_.updates.size();
     const uint32_t shift = substepShift();
@@ -140,51 +134,50 @@ void BurnSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) {
 // is of some of them: their order is by texel.
 void BurnSystem::sortDue() {
     auto& due = frame_.due;
+    const auto stepOf = [](const PendingTexel& event) { return event.tick / gpu::kStepTicks; };
     const auto sort = [&] {
-        std::sort(due.begin(), due.end(), [](const Frame::Due& a, const Frame::Due& b) {
-            return std::tie(a.step, a.event.object, a.event.texel, a.event.order) <
-                   std::tie(b.step, b.event.object, b.event.texel, b.event.order);
+        std::sort(due.begin(), due.end(), [&](const PendingTexel& a, const PendingTexel& b) {
+            return std::tuple(stepOf(a), a.object, a.texel, a.order) <
+                   std::tuple(stepOf(b), b.object, b.texel, b.order);
         });
     };
     sort();
+    constexpr uint32_t kErased = ~0u;  // tick
     bool spread = false;
     for (size_t first = 0, end = 0, count = due.size(); first < count; first = end) {
-        while (end < count && due[end].step == due[first].step &&
-               due[end].event.object == due[first].event.object)
+        while (end < count && stepOf(due[end]) == stepOf(due[first]) &&
+               due[end].object == due[first].object)
             ++end;
-        if (due[first].event.texel == kAllTexels || due[end - 1].event.texel != kAllTexels)
-            continue;
-        const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(due[first].event.object));
+        if (due[first].texel == kAllTexels || due[end - 1].texel != kAllTexels) continue;
+        const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(due[first].object));
         for (size_t i = first; i < end; ++i) {
-            if (due[i].event.texel != kAllTexels) continue;
-            Frame::Due one = due[i];
-            due[i].step = kMaxSteps;  // to be erased
+            if (due[i].texel != kAllTexels) continue;
+            PendingTexel one = due[i];
+            due[i].tick = kErased;
             for (uint32_t texel = 0; texel < domain.texelCount(); ++texel) {
                 if (!domain.real(texel)) continue;
-                one.event.texel = texel;
+                one.texel = texel;
                 due.push_back(one);
             }
             spread = true;
         }
     }
     if (!spread) return;
-    std::erase_if(due, [](const Frame::Due& one) { return one.step == kMaxSteps; });
+    std::erase_if(due, [](const PendingTexel& one) { return one.tick == kErased; });
     sort();
 }
 
 // The holes that a batch's heat came through, after its events: once for equal chains of holes.
-void BurnSystem::planGates(std::span<const Frame::Due> due, size_t firstEvent) {
+void BurnSystem::planGates(std::span<const PendingTexel> due, size_t firstEvent) {
     constexpr size_t kRecent = 64;  // chains that are compared
     std::array<std::pair<const PendingTexel*, uint32_t>, kRecent> known;
     size_t count = 0;
     const auto same = [](const PendingTexel& a, const PendingTexel& b) {
-        if (a.gateCount != b.gateCount || a.shut != b.shut) return false;
-        for (uint32_t k = 0; k < a.gateCount; ++k)
-            if (a.gates[k] != b.gates[k]) return false;
-        return true;
+        return a.shut == b.shut && std::ranges::equal(std::span(a.gates).first(a.gateCount),
+                                                      std::span(b.gates).first(b.gateCount));
     };
     for (size_t i = 0; i < due.size(); ++i) {
-        const PendingTexel& event = due[i].event;
+        const PendingTexel& event = due[i];
         FW_ASSERT(event.gateCount <= event.gates.size(), "%u gates", event.gateCount);
         if (event.gateCount == 0) continue;
         uint32_t at = 0;
@@ -230,23 +223,22 @@ void BurnSystem::touchLatched(uint64_t frameIndex) noexcept {
 }
 
 void BurnSystem::stimulateDue(uint64_t frameIndex) noexcept {
-    for (const Frame::Due& due : frame_.due) {
-        Object& object = scene_.objectAt(due.event.object);
+    for (const PendingTexel& due : frame_.due) {
+        Object& object = scene_.objectAt(due.object);
         ++object.changes;
         Stimulus& stimulus = stimulusOf(object, frameIndex);
         stimulus.starts = true;
-        stimulus.latest = std::max<uint64_t>(stimulus.latest, due.event.tick);
-        if (isCarry(due.event)) stimulus.from1 = carriedFrom(due.event) + 1;
-        if (due.event.kind == FW_IGNITE) {
-            const uint32_t texel = due.event.texel == kAllTexels
-                                       ? firstReal(scene_.domainOf(object))
-                                       : due.event.texel;
-            recordIgnition(object, stimulus, texel, due.event.tick);
-        } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
+        stimulus.latest = std::max<uint64_t>(stimulus.latest, due.tick);
+        if (isCarry(due)) stimulus.from1 = carriedFrom(due) + 1;
+        if (due.kind == FW_IGNITE) {
+            const uint32_t texel =
+                due.texel == kAllTexels ? firstReal(scene_.domainOf(object)) : due.texel;
+            recordIgnition(object, stimulus, texel, due.tick);
+        } else if (due.kind == FW_WET || due.kind == FW_EXTINGUISH) {
             stimulus.douses = true;
-            stimulus.douse = due.event.tick;
+            stimulus.douse = due.tick;
             stimulus.douseCause =
-                due.event.kind == FW_WET ? FW_EXTINGUISHED_BY_WATER : FW_EXTINGUISHED_BY_CALL;
+                due.kind == FW_WET ? FW_EXTINGUISHED_BY_WATER : FW_EXTINGUISHED_BY_CALL;
         }
     }
 }
@@ -291,7 +283,7 @@ void BurnSystem::forgetObject(const Object& object) noexcept {
 uint64_t BurnSystem::bytes() const noexcept {
     return frame_.latches.capacity() * sizeof(Frame::LatchOf) +
            frame_.updates.capacity() * sizeof(gpu::MaterialUpdate) +
-           frame_.due.capacity() * sizeof(Frame::Due) +
+           frame_.due.capacity() * sizeof(PendingTexel) +
            frame_.events.capacity() * sizeof(gpu::TexelEvent) +
            state_.pending.capacity() * sizeof(PendingTexel);
 }

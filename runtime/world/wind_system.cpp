@@ -27,11 +27,13 @@ std::array<float, 3> withMore(const float (&wind)[3], const WindVector& here) no
 
 }  // namespace
 
-WindVector windOf(const Winds& winds, const WindPlace& place, uint64_t tick) noexcept {
-    const WindVector on = components::windOnGrid(winds.grid, winds.around, place);
-    return components::windIn(
-        winds.zones, components::gustOf(winds.gusts, winds.seed, winds.around, on, place, tick),
-        place);
+WindVector windOf(const WindFields& winds, const components::Gusts& gusts,
+                  std::span<const WindZone> zones, uint32_t seed, const WindPlace& place,
+                  uint64_t tick) noexcept {
+    const WindVector around = fire::windUnits(winds.wind);
+    const WindVector on = components::windOnGrid(winds.grid, around, place);
+    return components::windIn(zones, components::gustOf(gusts, seed, around, on, place, tick),
+                              place);
 }
 
 WindSystem::WindSystem(const WorldContext& context, Scene& scene)
@@ -39,17 +41,13 @@ WindSystem::WindSystem(const WorldContext& context, Scene& scene)
     std::copy_n(context.def.wind, 3, state_.wind);
 }
 
-Winds WindSystem::view() const noexcept {
-    return {fire::windUnits(state_.wind), state_.grid, state_.gusts, state_.ordered,
-            context_.def.seed};
-}
-
 bool WindSystem::isUniform() const noexcept {
     return state_.ordered.empty() && state_.grid.points.empty() && !hasGusts();
 }
 
 WindVector WindSystem::at(const WindPlace& place, uint64_t tick) const noexcept {
-    return isUniform() ? fire::windUnits(state_.wind) : windOf(view(), place, tick);
+    if (isUniform()) return fire::windUnits(state_.wind);
+    return windOf(state_, state_.gusts, state_.ordered, context_.def.seed, place, tick);
 }
 
 std::array<float, 3> WindSystem::at(const float place[3], uint64_t tick) const noexcept {
@@ -58,10 +56,8 @@ std::array<float, 3> WindSystem::at(const float place[3], uint64_t tick) const n
 }
 
 std::array<float, 3> WindSystem::steadyAt(const float place[3]) const noexcept {
-    const components::Gusts none;
     return withMore(state_.wind,
-                    windOf({fire::windUnits(state_.wind), state_.grid, none, state_.ordered, 0},
-                           components::windPlace(place), 0));
+                    windOf(state_, {}, state_.ordered, 0, components::windPlace(place), 0));
 }
 
 void WindSystem::atPoint(const float point[3], float wind[3]) const {
@@ -263,15 +259,8 @@ void WindSystem::restore(WindSnapshot& from) noexcept {
     ++state_.changes;
 }
 
-void WindSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, zone] : state_.zones.entries()) checkMillimetres(zone.middle, by, "wind zone", i);
-    if (!state_.grid.points.empty()) checkMillimetres(state_.grid.shape.origin, by, "wind grid", 0);
-}
-
 void WindSystem::shiftOrigin(const double (&by)[3]) noexcept {
-    for (auto [i, zone] : state_.zones.entries()) moveMillimetres(zone.middle, by);
-    for (WindZone& zone : state_.ordered) moveMillimetres(zone.middle, by);
-    if (!state_.grid.points.empty()) moveMillimetres(state_.grid.shape.origin, by);
+    for (WindZone& zone : state_.ordered) moveBy(zone.middle, by);
     components::moveGusts(state_.gusts, by);
 }
 

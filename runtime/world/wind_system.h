@@ -12,16 +12,6 @@
 
 namespace fw::world {
 
-// All that blows.
-struct Winds {
-    fire::WindVector around{};  // everywhere
-    const components::WindGrid& grid;
-    const components::Gusts& gusts;
-    std::span<const components::WindZone> zones;  // in the order in which they count
-    uint32_t seed = 0;
-};
-[[nodiscard]] fire::WindVector windOf(const Winds& winds, const components::WindPlace& place,
-                                      uint64_t tick) noexcept;
 // The middle of an object's box, at rest.
 [[nodiscard]] components::WindPlace windPlaceOf(const components::Pose& pose,
                                                 const mesh::BurnDomain& domain) noexcept;
@@ -39,6 +29,11 @@ struct WindFields {  // that a save has
         a.range("wind", wind, -double(fire::kMaxWind), double(fire::kMaxWind));
     }
 };
+
+// `zones`: in the order in which they count.
+[[nodiscard]] fire::WindVector windOf(const WindFields& winds, const components::Gusts& gusts,
+                                      std::span<const components::WindZone> zones, uint32_t seed,
+                                      const components::WindPlace& place, uint64_t tick) noexcept;
 
 struct WindSnapshot : WindFields {
     explicit WindSnapshot(std::pmr::memory_resource* memory)
@@ -82,9 +77,14 @@ class WindSystem {
     void destroyZone(FwWindZoneId id);
     void atPoint(const float point[3], float wind[3]) const;
 
-    void plan(gpu::FramePlan& plan) noexcept;      // first of all
-    void checkShift(const double (&by)[3]) const;  // throws
-    void shiftOrigin(const double (&by)[3]) noexcept;
+    void plan(gpu::FramePlan& plan) noexcept;  // first of all
+    // visit(place, name, slot) for all that a shift of the origin moves and may refuse.
+    template <class Visit>
+    void eachPlace(const Visit& visit) {
+        for (auto [i, zone] : state_.zones.entries()) visit(zone.middle, "wind zone", i);
+        if (!state_.grid.points.empty()) visit(state_.grid.shape.origin, "wind grid", 0u);
+    }
+    void shiftOrigin(const double (&by)[3]) noexcept;  // all else
 
     [[nodiscard]] const WindState& state() const noexcept { return state_; }
     [[nodiscard]] uint64_t changes() const noexcept { return state_.changes; }
@@ -111,7 +111,6 @@ class WindSystem {
     void restore(WindSnapshot& from) noexcept;  // before objects are
 
  private:
-    [[nodiscard]] Winds view() const noexcept;
     [[nodiscard]] bool isUniform() const noexcept;  // the world's own wind blows everywhere
     void sortZones() noexcept;
     void updateObjects() noexcept;

@@ -418,9 +418,8 @@ void World::applyReadback(const gpu::Readback& readback) {
 
 void World::countMemory() noexcept {
     memoryCounts_.frames = burn_.bytes();
-    const ExchangeSystem::Memory exchange = exchange_.memory();
-    memoryCounts_.neighbours = exchange.neighbours + scene_.places.bytes();
-    memoryCounts_.contacts = exchange.contacts;
+    memoryCounts_.neighbours = exchange_.neighbourBytes() + scene_.places.bytes();
+    memoryCounts_.contacts = exchange_.contactBytes();
 }
 
 void World::memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const {
@@ -480,8 +479,11 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     }
     float whole[3];
     for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
+    const auto check = [&](const auto& place, const char* name, uint32_t slot) {
+        checkMoved(place, by, name, slot);
+    };
     eachSystem([&](auto& system) {
-        if constexpr (requires { system.checkShift(by); }) system.checkShift(by);
+        if constexpr (requires { system.eachPlace(check); }) system.eachPlace(check);
     });
     scene_.places.reserveMoves(scene_.objects.live());
     std::pmr::vector<Seen> seen = exchange_.recordedSeen();
@@ -501,7 +503,9 @@ void World::shiftBy(const double (&by)[3]) noexcept {
     if (by[0] == 0 && by[1] == 0 && by[2] == 0) return;
     context_.origin.add(by, context_.lastFrame);
     context_.backend.moveWorld(by);
+    const auto move = [&](auto& place, const char*, uint32_t) { moveBy(place, by); };
     eachSystem([&](auto& system) {
+        if constexpr (requires { system.eachPlace(move); }) system.eachPlace(move);
         if constexpr (requires { system.shiftOrigin(by); }) system.shiftOrigin(by);
     });
     events_.move(by);

@@ -3,6 +3,7 @@
 // flipbook alone, so pictures compare texel by texel.
 #include "flipbook/flipbook.h"
 #include "flipbook/picture.h"
+#include "sample.h"
 #include "shared/particle.h"
 #include "support/own_world.h"
 

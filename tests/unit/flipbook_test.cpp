@@ -6,6 +6,7 @@
 #include "flamewright/flamewright.h"
 #include "flipbook/own.h"
 #include "flipbook/picture.h"
+#include "sample.h"
 #include "store.h"
 
 #include <gtest/gtest.h>

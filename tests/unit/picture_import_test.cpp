@@ -3,6 +3,7 @@
 #include "import/float_picture.h"
 #include "import/image_decode.h"
 #include "profile_picture.h"
+#include "sample.h"
 #include "sheet.h"
 #include "support/sanitized.h"
 

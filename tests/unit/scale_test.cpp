@@ -97,25 +97,24 @@ TEST(BoxGrid, VisitsFewOfManyBoxes) {
 TEST(ListPool, KeepsListsApartAndReportsChanges) {
     Random random(11);
     world::ListPool<uint32_t> pool(memory(), ~0u);
-    std::vector<world::ListPlace> places(40);
-    std::vector<std::vector<uint32_t>> lists(places.size());
+    pool.addLists(40);
+    std::vector<std::vector<uint32_t>> lists(40);
     std::vector<uint32_t> copy;  // as a backend holds it
     std::pmr::vector<gpu::ExchangeUpdate::Range> ranges(memory());
     for (int turn = 0; turn < 4000; ++turn) {
-        const size_t i = random() % lists.size();
-        world::ListPlace& place = places[i];
+        const uint32_t i = random() % uint32_t(lists.size());
         std::vector<uint32_t>& list = lists[i];
         if (random() % 40 == 0) {
-            pool.drop(place);
+            pool.drop(i);
             list.clear();
         } else if (!list.empty() && random() % 3 == 0) {
             const uint32_t at = random() % uint32_t(list.size());
-            pool.erase(place, at);
+            pool.erase(i, at);
             list.erase(list.begin() + at);
         } else {
             const uint32_t at = random() % (uint32_t(list.size()) + 1), value = random() % 1000;
-            pool.reserve(place, place.count + 1);
-            pool.insert(place, at, value);
+            pool.reserve(i, uint32_t(list.size()) + 1);
+            pool.insert(i, at, value);
             list.insert(list.begin() + at, value);
         }
         if (random() % 5 == 0) {
@@ -127,8 +126,8 @@ TEST(ListPool, KeepsListsApartAndReportsChanges) {
             pool.settle();
             ASSERT_TRUE(std::equal(copy.begin(), copy.end(), pool.all().begin())) << turn;
             size_t used = 0;
-            for (size_t k = 0; k < lists.size(); ++k) {
-                const auto stored = pool.of(places[k]);
+            for (uint32_t k = 0; k < lists.size(); ++k) {
+                const auto stored = pool.of(k);
                 ASSERT_TRUE(
                     std::equal(lists[k].begin(), lists[k].end(), stored.begin(), stored.end()));
                 used += lists[k].size();

@@ -1,5 +1,6 @@
 #include "finish.h"
 
+#include "sample.h"
 #include "shared/black_body.h"
 
 #include <algorithm>
