@@ -18,8 +18,10 @@ constexpr uint32_t pushBytesOf() {
 
 constexpr ComputePass kComputePasses[] = {
 #define FW_COMPUTE_PASS(name, Push) {#name, pushBytesOf<Push>()},
+#define FW_PLAIN_PASS(name, part) {#name, 0, FramePart::part},
 #include "gpu/passes/passes.inl"
 #undef FW_COMPUTE_PASS
+#undef FW_PLAIN_PASS
 };
 
 // The fragment shaders of a soft pass: without the host's depth, against it, and against one of

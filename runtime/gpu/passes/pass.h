@@ -63,9 +63,11 @@ constexpr bool isDynamic(uint32_t resource) noexcept {
     return resource == FW_BIND_VIEW || resource == FW_BIND_VOLUMES;
 }
 
+enum class FramePart : uint8_t { none, simulation, prediction, deformation, effects, refinement };
 struct ComputePass {
-    const char* name;    // of the shader too, with ".comp" behind it
-    uint32_t pushBytes;  // <= 128
+    const char* name;                    // of the shader too, with ".comp" behind it
+    uint32_t pushBytes;                  // <= 128
+    FramePart begins = FramePart::none;  // a plain pass: the part that one group of it begins
 };
 struct NoPush {};
 // A pass of passes.inl, with the type of its push constants.
@@ -78,13 +80,17 @@ struct ComputePassOf {
 namespace pass {
 enum Number : uint32_t {
 #define FW_COMPUTE_PASS(name, Push) number_##name,
+#define FW_PLAIN_PASS(name, part) number_##name,
 #include "gpu/passes/passes.inl"
 #undef FW_COMPUTE_PASS
+#undef FW_PLAIN_PASS
     count,
 };
 #define FW_COMPUTE_PASS(name, Push) inline constexpr ComputePassOf<Push> name{number_##name};
+#define FW_PLAIN_PASS(name, part)
 #include "gpu/passes/passes.inl"
 #undef FW_COMPUTE_PASS
+#undef FW_PLAIN_PASS
 }  // namespace pass
 
 enum class VertexInput : uint8_t {

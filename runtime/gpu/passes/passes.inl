@@ -3,6 +3,9 @@
 //
 // A pass binds what its shader declares in set 0 (shader_interface.h), so nothing else is listed
 // here. A shader `name_texels.comp` runs instead of `name.comp` where the device has texel buffers.
+//
+// frame.cpp dispatches these passes. A row FW_PLAIN_PASS(name, part) needs no line there: one group
+// of it begins that FramePart, without push constants.
 
 // Objects created, moved or restored since the last frame.
 FW_COMPUTE_PASS(reset, StepPush)

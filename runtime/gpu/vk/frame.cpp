@@ -16,6 +16,13 @@ void zeroRow(FrameRecorder& r, uint32_t row) {
     r.fillZero(FW_BIND_COUNTERS, row * kRowBytes, kRowBytes);
 }
 
+// The plain passes of a part of the frame.
+void beginPart(FrameRecorder& r, FramePart part) {
+    const std::span<const ComputePass> passes = computePasses();
+    for (uint32_t i = 0; i < passes.size(); ++i)
+        if (passes[i].begins == part) r.dispatch(ComputePassOf<NoPush>{i}, NoPush{}, 1);
+}
+
 template <class Push>
 void setLists(const FrameLists& lists, Push& push) noexcept {
     push.row = lists.row;
@@ -128,6 +135,7 @@ void recordCounters(FrameRecorder& r, FrameLists& lists, uint32_t iterations) {
 }
 
 void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& step) {
+    beginPart(r, FramePart::simulation);
     const bool dense = (step.switches & kSwitchDense) != 0;
     StepPush push = pushOf(lists, step);
     const auto allotBudget = [&] { r.dispatch(pass::burn_budget, push, 1); };
@@ -264,6 +272,7 @@ void recordPredictRestart(FrameRecorder& r, const FrameLists& lists, uint32_t ob
 }
 
 void recordPrediction(FrameRecorder& r, FrameLists& lists, uint32_t endTick, bool seen) {
+    beginPart(r, FramePart::prediction);
     StepPush push{};
     push.now = endTick;
     push.predictParity = lists.predictParity;
@@ -290,6 +299,7 @@ void recordSupport(FrameRecorder& r, uint32_t endTick, const TileShare& share) {
 
 void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
     if (deform.groups.count == 0) return;
+    beginPart(r, FramePart::deformation);
     r.copyIn(deform.groups.at, FW_BIND_DEFORM_GROUPS, 0, uint64_t(deform.groups.count) * 8);
     const auto dispatch = [&](ComputePassOf<DeformPush> pass, uint32_t first, uint32_t groups,
                               uint32_t parity) {
@@ -360,6 +370,7 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
     none.time = float(double(s.open.endTick) / kTicksPerSecond);
     target.viewOffset = s.pushView(slot, looked ? from[0]->view : none, whole);
     FrameRecorder r(target);
+    beginPart(r, FramePart::effects);
     StepPush push{};
     push.now = s.open.endTick;
     push.burnParity = s.simulation.lists.burnParity;
@@ -434,6 +445,7 @@ void recordLevels(FrameRecorder& r, const FrameLists& lists, const RefineRecord&
 }  // namespace
 
 void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine) {
+    beginPart(r, FramePart::refinement);
     if (refine.turn) recordLevels(r, lists, refine);
     RefinePush push = refine.push;
     push.phase = 0;
