@@ -191,18 +191,12 @@ struct FramePlan {
     Detail detail;                            // cosmetic
 };
 
-struct BurnMap {
-    uint32_t object = 0;
-    std::span<const uint32_t> ticks;
-    std::span<const uvec2> heat;  // packed HeatTexel; empty: none
-};
-
 struct Readback {  // valid until the next call of nextReadback
     uint64_t frameIndex = 0;
     uint32_t endTick = 0;
     std::span<const ObjectCounters> objects;  // by object slot
     std::span<const ProbeAnswer> answers;     // of the probes of that frame
-    std::span<const BurnMap> burnMaps;
+    std::span<const ObjectImage> burnMaps;    // without tiles and counters
     std::span<const ObjectImage> images;
     std::span<const BurnLight> lights;
     std::span<const FieldCounters> fields;  // by slot; those of its rows are the backend's

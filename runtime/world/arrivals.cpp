@@ -63,7 +63,7 @@ void QuerySystem::requestForecasts() noexcept {
     }
 }
 
-void QuerySystem::beginForecast(Object& object, const gpu::BurnMap& map,
+void QuerySystem::beginForecast(Object& object, const gpu::ObjectImage& map,
                                 const gpu::Readback& readback) noexcept {
     Forecast& forecast = *object.forecast;
     FW_ASSERT(map.ticks.size() == scene_.domainOf(object).texelCount(), "%zu texels",

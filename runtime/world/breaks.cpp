@@ -187,7 +187,7 @@ void BurnSystem::findBreaks(Object& object, std::span<const uint32_t> ticks,
     }
 }
 
-void BurnSystem::onBurnMap(Object& object, const gpu::BurnMap& map,
+void BurnSystem::onBurnMap(Object& object, const gpu::ObjectImage& map,
                            const gpu::Readback& readback) noexcept {
     if (!object.breaks) return;
     Breaks& breaks = *object.breaks;

@@ -79,7 +79,8 @@ class BurnSystem {
     void commit(const HostFrame& frame) noexcept;
     void onFrameDone(uint64_t frameIndex) noexcept;  // before anything else of its readback
     void onReadback(const gpu::Readback& readback) noexcept;
-    void onBurnMap(Object& object, const gpu::BurnMap& map, const gpu::Readback& readback) noexcept;
+    void onBurnMap(Object& object, const gpu::ObjectImage& map,
+                   const gpu::Readback& readback) noexcept;
     void settle(const gpu::Readback& readback) noexcept;  // after all else of it
     void checkGone(const Object& object) const;           // throws unless it may be destroyed
     void keepGiven(const Object& from);                   // before it is destroyed; throws

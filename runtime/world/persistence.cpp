@@ -42,7 +42,7 @@ void PersistenceSystem::commit(const HostFrame& frame) noexcept {
     commitSave(frame.index);
 }
 
-void PersistenceSystem::onBurnMap(const gpu::BurnMap& map, const gpu::Readback& readback) {
+void PersistenceSystem::onBurnMap(const gpu::ObjectImage& map, const gpu::Readback& readback) {
     if (recorder_.network) recordHash(map, readback);
 }
 

@@ -76,7 +76,7 @@ class PersistenceSystem {
     void checkFrame(float deltaTime) const;
     void plan(const HostFrame& frame, gpu::FramePlan& plan);  // throws std::bad_alloc
     void commit(const HostFrame& frame) noexcept;
-    void onBurnMap(const gpu::BurnMap& map, const gpu::Readback& readback);
+    void onBurnMap(const gpu::ObjectImage& map, const gpu::Readback& readback);
     void completeSaves(const gpu::Readback& readback) noexcept;
     void forgetTags(std::span<const Tag> reached, uint64_t frameIndex) noexcept;
     [[nodiscard]] std::span<const uint32_t> hashed() const noexcept { return hashed_; }
@@ -97,7 +97,7 @@ class PersistenceSystem {
     void completeSave(Save& save, const gpu::Readback& readback);
     void captureEvents(Save& save);
     void planHashes(const HostFrame& frame);
-    void recordHash(const gpu::BurnMap& map, const gpu::Readback& readback);
+    void recordHash(const gpu::ObjectImage& map, const gpu::Readback& readback);
     // Throws unless the snapshot fits this world, whose ids it then has.
     void checkSnapshot(Snapshot& snapshot);
     // Its latch, too, as it was.

@@ -366,7 +366,7 @@ void QuerySystem::commit(const HostFrame& host) noexcept {
     }
 }
 
-void QuerySystem::onBurnMap(Object& object, const gpu::BurnMap& map,
+void QuerySystem::onBurnMap(Object& object, const gpu::ObjectImage& map,
                             const gpu::Readback& readback) noexcept {
     if (object.forecast && object.forecast->pending) beginForecast(object, map, readback);
     BurnMapCopy& copy = object.map;

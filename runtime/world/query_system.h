@@ -88,7 +88,8 @@ class QuerySystem {
     void plan(std::initializer_list<std::span<const uint32_t>> others, gpu::FramePlan& plan);
     void commit(const HostFrame& frame) noexcept;
     void onReadback(const gpu::Readback& readback) noexcept;
-    void onBurnMap(Object& object, const gpu::BurnMap& map, const gpu::Readback& readback) noexcept;
+    void onBurnMap(Object& object, const gpu::ObjectImage& map,
+                   const gpu::Readback& readback) noexcept;
     void runForecasts() noexcept;
     void forgetObject(const Object& object) noexcept;  // that goes
     void shiftOrigin(const double (&by)[3]) noexcept;
@@ -131,7 +132,7 @@ class QuerySystem {
     // arrivals.cpp
     [[nodiscard]] uint64_t changesOf(const Object& object) const noexcept;
     void requestForecasts() noexcept;
-    void beginForecast(Object& object, const gpu::BurnMap& map,
+    void beginForecast(Object& object, const gpu::ObjectImage& map,
                        const gpu::Readback& readback) noexcept;
     // surroundings.cpp
     components::SurroundingAir listSources();

@@ -134,7 +134,7 @@ void PersistenceSystem::planHashes(const HostFrame& frame) {
         if (scene_.objects.at(slot)) hashed_.push_back(slot);
 }
 
-void PersistenceSystem::recordHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
+void PersistenceSystem::recordHash(const gpu::ObjectImage& map, const gpu::Readback& readback) {
     const uint64_t end = readback.endTick;
     const uint32_t rounds = hashRounds(scene_.objects.slotCount());
     if (end % kHashTicks != 0 || map.object % rounds != end / kHashTicks % rounds) return;

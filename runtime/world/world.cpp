@@ -403,7 +403,7 @@ void World::applyReadback(const gpu::Readback& readback) {
     fields_.onReadback(readback);
     const BurnCounts& counts = burn_.state().counts;
     rooms_.onReadback(readback, counts.hot != 0 || counts.burning != 0);
-    for (const gpu::BurnMap& map : readback.burnMaps) {
+    for (const gpu::ObjectImage& map : readback.burnMaps) {
         auto* owned = scene_.objects.findSlot(map.object);
         if (!owned || (*owned)->firstFrame > readback.frameIndex) continue;
         persistence_.onBurnMap(map, readback);

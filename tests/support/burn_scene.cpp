@@ -362,7 +362,7 @@ FrameAnswer copyAnswer(const gpu::Readback& readback) {
     answer.answers.assign(readback.answers.begin(), readback.answers.end());
     answer.maps.resize(readback.burnMaps.empty() ? 0 : readback.objects.size());
     answer.heat.resize(answer.maps.size());
-    for (const gpu::BurnMap& map : readback.burnMaps) {
+    for (const gpu::ObjectImage& map : readback.burnMaps) {
         answer.maps[map.object].assign(map.ticks.begin(), map.ticks.end());
         answer.heat[map.object].assign(map.heat.begin(), map.heat.end());
     }

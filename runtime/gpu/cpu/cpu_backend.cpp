@@ -525,19 +525,10 @@ ReadbackStore& CpuBackend::State::reserveReadback(const FramePlan& plan) {
         readbacks.emplace_back(memory);
     }
     ReadbackStore& store = readbacks[(head + waiting) % readbacks.size()];
-    size_t words = 0, heatTexels = 0;
-    for (uint32_t slot : plan.burnMaps)
-        if (const CpuObject* object = find(slot)) {
-            words += object->state.size();
-            heatTexels += object->heat.size();
-        }
     store.objects.resize(objects.size());
     store.answers.resize(plan.probes.size());
-    store.mapTicks.resize(words);
-    store.mapHeat.resize(heatTexels);
-    store.maps.clear();
-    store.maps.reserve(plan.burnMaps.size());
-    reserveImages(store, plan.images);
+    reserveImages(store.burnMaps, plan.burnMaps, false);
+    reserveImages(store.images, plan.images, true);
     store.lights.clear();
     store.lights.reserve(maxLights);
     store.fields.resize(fields.size());
@@ -604,28 +595,13 @@ void CpuBackend::State::answerProbes(std::span<const Probe> probes,
     }
 }
 
-void CpuBackend::State::copyBurnMaps(std::span<const uint32_t> slots,
-                                     ReadbackStore& store) const noexcept {
-    std::span ticks(store.mapTicks);
-    std::span heat(store.mapHeat);
-    for (uint32_t slot : slots) {
-        const CpuObject* object = find(slot);
-        if (!object) continue;
-        FW_ASSERT(store.maps.size() < store.maps.capacity(), "%zu burn maps", store.maps.size());
-        store.maps.push_back(
-            {slot, copyNext<uint32_t>(object->state, ticks), copyNext<uvec2>(object->heat, heat)});
-    }
-    FW_ASSERT(ticks.empty() && heat.empty(), "%zu texels and %zu with heat are left", ticks.size(),
-              heat.size());
-}
-
 void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept {
     countFields(store.fields);
     for (size_t i = 0; i < objects.size(); ++i)
         store.objects[i] = objects[i] ? objects[i]->counters : ObjectCounters{};
     answerProbes(plan.probes, store.answers);
-    copyBurnMaps(plan.burnMaps, store);
-    collectImages(store, plan.images);
+    collectImages(store.burnMaps, plan.burnMaps, false);
+    collectImages(store.images, plan.images, true);
     findLights(store.lights);
     store.rooms.assign(roomAir.begin(), airs ? roomAir.end() : roomAir.begin());
     Readback& readback = store.readback;
@@ -634,8 +610,8 @@ void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& sto
     readback.endTick = plan.endTick;
     readback.objects = store.objects;
     readback.answers = store.answers;
-    readback.burnMaps = store.maps;
-    readback.images = store.images;
+    readback.burnMaps = store.burnMaps.images;
+    readback.images = store.images.images;
     readback.lights = store.lights;
     readback.fields = store.fields;
     readback.rooms = store.rooms;
@@ -738,8 +714,8 @@ void CpuBackend::State::countLists() noexcept {
     uint64_t bytes = 0;
     for (const ReadbackStore& store : readbacks)
         bytes += store.objects.capacity() * sizeof(ObjectCounters) +
-                 store.mapTicks.capacity() * sizeof(uint32_t) +
-                 store.mapHeat.capacity() * sizeof(uvec2);
+                 store.burnMaps.ticks.capacity() * sizeof(uint32_t) +
+                 store.burnMaps.heat.capacity() * sizeof(uvec2);
     counts.readbacks = bytes;
     counts.tiles = tiles.size();
     counts.tileCapacity = tiles.capacity();

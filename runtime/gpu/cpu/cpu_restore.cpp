@@ -7,43 +7,45 @@
 
 namespace fw::gpu::cpu {
 
-void CpuBackend::State::reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const {
+void CpuBackend::State::reserveImages(ImageStore& store, std::span<const uint32_t> slots,
+                                      bool whole) const {
     size_t texels = 0, heated = 0, tileCount = 0;
-    for (const uint32_t slot : slots) {
-        const CpuObject& object = at(slot);
-        texels += object.state.size();
-        heated += object.heat.size();
-        tileCount += object.record.tileCount;
-    }
-    store.imageTicks.resize(texels);
-    store.imageHeat.resize(heated);
-    store.imageTiles.resize(tileCount);
-    store.imageTileHeat.resize(tileCount);
+    for (const uint32_t slot : slots)
+        if (const CpuObject* object = find(slot)) {
+            texels += object->state.size();
+            heated += object->heat.size();
+            tileCount += whole ? object->record.tileCount : 0;
+        }
+    store.ticks.resize(texels);
+    store.heat.resize(heated);
+    store.tiles.resize(tileCount);
+    store.tileHeat.resize(tileCount);
     store.images.clear();
     store.images.reserve(slots.size());
 }
 
-void CpuBackend::State::collectImages(ReadbackStore& store,
-                                      std::span<const uint32_t> slots) const noexcept {
-    const std::span<const TileState> allTiles(tiles);
-    const std::span<const TileHeat> allHeat(tileHeat);
-    std::span ticks(store.imageTicks);
-    std::span heat(store.imageHeat);
-    std::span imageTiles(store.imageTiles);
-    std::span imageHeat(store.imageTileHeat);
+void CpuBackend::State::collectImages(ImageStore& store, std::span<const uint32_t> slots,
+                                      bool whole) const noexcept {
+    std::span ticks(store.ticks);
+    std::span heat(store.heat);
+    std::span imageTiles(store.tiles);
+    std::span imageHeat(store.tileHeat);
     for (const uint32_t slot : slots) {
-        const CpuObject& object = at(slot);
-        const size_t first = object.record.worldTileBase, count = object.record.tileCount;
-        ObjectImage image;
-        image.object = slot;
-        image.ticks = copyNext<uint32_t>(object.state, ticks);
-        image.heat = copyNext<uvec2>(object.heat, heat);
-        image.tiles = copyNext<TileState>(allTiles.subspan(first, count), imageTiles);
-        image.tileHeat = copyNext<TileHeat>(allHeat.subspan(first, count), imageHeat);
-        image.counters = object.counters;
+        const CpuObject* object = find(slot);
+        if (!object) continue;
         FW_ASSERT(store.images.size() < store.images.capacity(), "%zu images", store.images.size());
-        store.images.push_back(image);
+        ObjectImage& image = store.images.emplace_back();
+        image.object = slot;
+        image.ticks = copyNext<uint32_t>(object->state, ticks);
+        image.heat = copyNext<uvec2>(object->heat, heat);
+        if (!whole) continue;
+        const size_t first = object->record.worldTileBase, count = object->record.tileCount;
+        image.tiles = copyNext(std::span(tiles).subspan(first, count), imageTiles);
+        image.tileHeat = copyNext(std::span(tileHeat).subspan(first, count), imageHeat);
+        image.counters = object->counters;
     }
+    FW_ASSERT(ticks.empty() && heat.empty() && imageTiles.empty() && imageHeat.empty(),
+              "%zu texels and %zu with heat are left", ticks.size(), heat.size());
 }
 
 void CpuBackend::State::resetObject(CpuObject& object, uint32_t slot) noexcept {

@@ -89,20 +89,23 @@ struct CpuField {
     FieldRules rules{};
 };
 
+struct ImageStore {  // images of objects, and what they refer to
+    explicit ImageStore(std::pmr::memory_resource* memory)
+        : ticks(memory), heat(memory), tiles(memory), tileHeat(memory), images(memory) {}
+    std::pmr::vector<uint32_t> ticks;
+    std::pmr::vector<uvec2> heat;
+    std::pmr::vector<TileState> tiles;
+    std::pmr::vector<TileHeat> tileHeat;
+    std::pmr::vector<ObjectImage> images;
+};
+
 struct ReadbackStore {
     explicit ReadbackStore(std::pmr::memory_resource* of) : memory(of) {}
     std::pmr::memory_resource* memory;
     Readback readback;
     std::pmr::vector<ObjectCounters> objects{memory};
     std::pmr::vector<ProbeAnswer> answers{memory};
-    std::pmr::vector<uint32_t> mapTicks{memory};
-    std::pmr::vector<uvec2> mapHeat{memory};
-    std::pmr::vector<BurnMap> maps{memory};
-    std::pmr::vector<uint32_t> imageTicks{memory};
-    std::pmr::vector<uvec2> imageHeat{memory};
-    std::pmr::vector<TileState> imageTiles{memory};
-    std::pmr::vector<TileHeat> imageTileHeat{memory};
-    std::pmr::vector<ObjectImage> images{memory};
+    ImageStore burnMaps{memory}, images{memory};
     std::pmr::vector<BurnLight> lights{memory};
     std::pmr::vector<FieldCounters> fields{memory};
     std::pmr::vector<RoomAir> rooms{memory};
@@ -182,7 +185,6 @@ struct CpuBackend::State {
     ReadbackStore& reserveReadback(const FramePlan& plan);
     void runStep(const StepPlan& step) noexcept;
     void answerProbes(std::span<const Probe> probes, std::span<ProbeAnswer> answers) const noexcept;
-    void copyBurnMaps(std::span<const uint32_t> slots, ReadbackStore& store) const noexcept;
     void finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept;
     void listTimes(uint64_t frameIndex) noexcept;
     void countLists() noexcept;  // for memoryRows, which any thread may call
@@ -233,8 +235,10 @@ struct CpuBackend::State {
     uint32_t allocateTiles(uint32_t count);
     void releaseTiles(uint32_t first, uint32_t count) noexcept;
     // cpu_restore.cpp
-    void reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const;  // throws
-    void collectImages(ReadbackStore& store, std::span<const uint32_t> slots) const noexcept;
+    // `whole`: with tiles and counters. reserveImages throws.
+    void reserveImages(ImageStore& store, std::span<const uint32_t> slots, bool whole) const;
+    void collectImages(ImageStore& store, std::span<const uint32_t> slots,
+                       bool whole) const noexcept;
     void resetObject(CpuObject& object, uint32_t slot) noexcept;  // to its state after creation
     // cpu_field.cpp
     void stepFields(const FieldUpdate& update) noexcept;

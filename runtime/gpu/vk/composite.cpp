@@ -17,25 +17,25 @@ bool isMixed(const FwVulkanFrame& frame) noexcept {
 // Haze is drawn where a frame gives its colour, so none is no fault.
 void checkHostColor(const Target& target, const FwVulkanFrame& frame) {
     if (isMixed(frame) && !target.key.transparency)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::transparency is %g and the target was registered without "
-                   "FW_TARGET_TRANSPARENCY (64); only 0 and 1 are drawn there.",
-                   double(frame.transparency));
+        core::refuse(
+            "FwVulkanFrame::transparency is %g and the target was registered without "
+            "FW_TARGET_TRANSPARENCY (64); only 0 and 1 are drawn there.",
+            double(frame.transparency));
     if (isMixed(frame) && !frame.sampledColor)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::transparency is %g and sampledColor is null; between 0 and 1 a "
-                   "copy of what the target holds is needed. Give one in FwFrameInfo, or draw into "
-                   "a layer of "
-                   "your own and blend that.",
-                   double(frame.transparency));
+        core::refuse(
+            "FwVulkanFrame::transparency is %g and sampledColor is null; between 0 and 1 a "
+            "copy of what the target holds is needed. Give one in FwFrameInfo, or draw into "
+            "a layer of "
+            "your own and blend that.",
+            double(frame.transparency));
     if ((!target.key.haze && !isMixed(frame)) || !frame.sampledColor ||
         frame.sampledColorLayout == VK_IMAGE_LAYOUT_GENERAL ||
         frame.sampledColorLayout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
         return;
-    core::fail(FW_ERROR_INVALID_ARGUMENT,
-               "FwVulkanFrame::sampledColorLayout is %d; our shaders read colour that is in "
-               "GENERAL (1) or SHADER_READ_ONLY_OPTIMAL (5).",
-               int(frame.sampledColorLayout));
+    core::refuse(
+        "FwVulkanFrame::sampledColorLayout is %d; our shaders read colour that is in "
+        "GENERAL (1) or SHADER_READ_ONLY_OPTIMAL (5).",
+        int(frame.sampledColorLayout));
 }
 
 constexpr VkAccessFlags kColorAccess =
@@ -56,8 +56,7 @@ VkDescriptorSet hostSetFor(BackendState& s, FrameInFlight& slot, VkImageView vie
         slot.hostPool = makeSets(s.device, {&size, 1}, layouts, slot.hostSets);
     }
     if (slot.hostSetCount == kSets)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "A frame is drawn more than %u times against a sampled depth; that is the limit.",
             FrameInFlight::kHostDraws);
     const VkDescriptorSet set = slot.hostSets[slot.hostSetCount++];
@@ -124,26 +123,23 @@ VkFramebuffer framebufferFor(BackendState& s, FrameInFlight& slot, const Target&
 
 void checkDepth(const FwVulkanFrame& frame, const VkViewport& viewport) {
     if (!frame.sampledDepth)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::sampledDepth is null but the target has FW_DEPTH_SAMPLED.");
+        core::refuse("FwVulkanFrame::sampledDepth is null but the target has FW_DEPTH_SAMPLED.");
     if (frame.sampledDepthLayout != VK_IMAGE_LAYOUT_GENERAL &&
         frame.sampledDepthLayout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL &&
         frame.sampledDepthLayout != VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::sampledDepthLayout is %d; our shaders read images that are in "
-                   "GENERAL (1), DEPTH_STENCIL_READ_ONLY_OPTIMAL (4) or SHADER_READ_ONLY_OPTIMAL "
-                   "(5).",
-                   int(frame.sampledDepthLayout));
+        core::refuse(
+            "FwVulkanFrame::sampledDepthLayout is %d; our shaders read images that are in "
+            "GENERAL (1), DEPTH_STENCIL_READ_ONLY_OPTIMAL (4) or SHADER_READ_ONLY_OPTIMAL "
+            "(5).",
+            int(frame.sampledDepthLayout));
     if (viewport.minDepth != 0.0f || viewport.maxDepth != 1.0f)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "viewport->minDepth is %g and maxDepth is %g; FW_DEPTH_SAMPLED needs 0 and 1.",
-                   double(viewport.minDepth), double(viewport.maxDepth));
+        core::refuse("viewport->minDepth is %g and maxDepth is %g; FW_DEPTH_SAMPLED needs 0 and 1.",
+                     double(viewport.minDepth), double(viewport.maxDepth));
 }
 
 void checkImage(const FwVulkanImage& image, const char* name) {
     const auto refuse = [&](const char* field, uint32_t value, const char* why) {
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanComposite::%s.%s is %u; %s.", name, field,
-                   value, why);
+        core::refuse("FwVulkanComposite::%s.%s is %u; %s.", name, field, value, why);
     };
     if (image.layoutAfter == VK_IMAGE_LAYOUT_UNDEFINED ||
         image.layoutAfter == VK_IMAGE_LAYOUT_PREINITIALIZED)
@@ -159,23 +155,21 @@ void checkImage(const FwVulkanImage& image, const char* name) {
 void checkComposite(const Device& device, const Target& target, const FwVulkanComposite& images) {
     const bool hasDepth = target.key.depthMode != FW_DEPTH_NONE;
     if (images.color.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanComposite::color.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the "
-                   "image would lose what the host drew.");
+        core::refuse(
+            "FwVulkanComposite::color.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the "
+            "image would lose what the host drew.");
     if (hasDepth && (!images.depth.image || !images.depth.view))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanComposite::depth is null but the target has depth mode %u.",
-                   uint32_t(target.key.depthMode));
+        core::refuse("FwVulkanComposite::depth is null but the target has depth mode %u.",
+                     uint32_t(target.key.depthMode));
     if (hasDepth && images.depth.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanComposite::depth.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the image "
-                   "would lose the depth that is to be tested or sampled.");
+        core::refuse(
+            "FwVulkanComposite::depth.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the image "
+            "would lose the depth that is to be tested or sampled.");
     checkImage(images.color, "color");
     if (hasDepth) checkImage(images.depth, "depth");
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
     if (images.width > limits.maxFramebufferWidth || images.height > limits.maxFramebufferHeight)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwVulkanComposite is %u x %u pixels; the device's largest framebuffer is %u x %u.",
             images.width, images.height, limits.maxFramebufferWidth, limits.maxFramebufferHeight);
 }
@@ -236,18 +230,17 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
     if (!s.context.pipelines.ready()) return false;
     const Target& target = *s.context.pipelines.findTarget(targetId);
     if (target.key.composite)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The target was registered with FW_TARGET_COMPOSITE; it is for "
-                   "fwWorld_RecordComposite.");
+        core::refuse(
+            "The target was registered with FW_TARGET_COMPOSITE; it is for "
+            "fwWorld_RecordComposite.");
     if (target.key.samplesDepth()) checkDepth(frame, viewport);
     checkHostColor(target, frame);
     const VkPhysicalDeviceLimits& limits = s.device.properties.limits;
     if (viewport.width > float(limits.maxViewportDimensions[0]) ||
         viewport.height > float(limits.maxViewportDimensions[1]))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "viewport is %g x %g pixels; the device's maxViewportDimensions are %u x %u.",
-                   double(viewport.width), double(viewport.height), limits.maxViewportDimensions[0],
-                   limits.maxViewportDimensions[1]);
+        core::refuse("viewport is %g x %g pixels; the device's maxViewportDimensions are %u x %u.",
+                     double(viewport.width), double(viewport.height),
+                     limits.maxViewportDimensions[0], limits.maxViewportDimensions[1]);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
     s.targets.scissor = frame.scissor;
@@ -265,9 +258,9 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     if (!s.context.pipelines.ready()) return false;
     const Target& target = *s.context.pipelines.findTarget(targetId);
     if (!target.key.composite)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The target was registered without FW_TARGET_COMPOSITE; it is for "
-                   "fwWorld_RecordInside.");
+        core::refuse(
+            "The target was registered without FW_TARGET_COMPOSITE; it is for "
+            "fwWorld_RecordInside.");
     checkComposite(s.device, target, images);
     checkHostColor(target, frame);
     if (images.width == 0 || images.height == 0) return true;

@@ -59,16 +59,15 @@ void Device::adoptHost(const FwVulkanHost& host) {
         {"physicalDevice", host.physicalDevice != VK_NULL_HANDLE},
         {"device", host.device != VK_NULL_HANDLE}};
     for (const auto& [field, given] : handles)
-        if (!given) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::%s is null.", field);
+        if (!given) core::refuse("FwVulkanHost::%s is null.", field);
     if (host.enabledExtensionCount && !host.enabledExtensions)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanHost::enabledExtensions is null but enabledExtensionCount is %u.",
-                   host.enabledExtensionCount);
+        core::refuse("FwVulkanHost::enabledExtensions is null but enabledExtensionCount is %u.",
+                     host.enabledExtensionCount);
     if (host.enabledInstanceExtensionCount && !host.enabledInstanceExtensions)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanHost::enabledInstanceExtensions is null but "
-                   "enabledInstanceExtensionCount is %u.",
-                   host.enabledInstanceExtensionCount);
+        core::refuse(
+            "FwVulkanHost::enabledInstanceExtensions is null but "
+            "enabledInstanceExtensionCount is %u.",
+            host.enabledInstanceExtensionCount);
     instance = host.instance;
     physicalDevice = host.physicalDevice;
     handle = host.device;
@@ -158,9 +157,8 @@ void Device::checkDevice() {
     uint32_t count = kMaxFamilies;
     table.GetPhysicalDeviceQueueFamilyProperties(physicalDevice, &count, families.data());
     if (queueFamily >= count)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanHost::queueFamilyIndex is %u; the device has %u queue families.",
-                   queueFamily, count);
+        core::refuse("FwVulkanHost::queueFamilyIndex is %u; the device has %u queue families.",
+                     queueFamily, count);
     const VkQueueFamilyProperties& family = families[queueFamily];
     if ((family.queueFlags & kQueueFlags) != kQueueFlags)
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,

@@ -70,8 +70,8 @@ void addStepNeeds(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
     for (const StepPlan& step : plan.steps) {
         iterates |= step.exchange && !s.simulation.burnEmpty;
         if (step.events.size() > size_t(kMaxGroups) * 64)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "One step has %zu texel events; the limit is %u.",
-                       step.events.size(), kMaxGroups * 64);
+            core::refuse("One step has %zu texel events; the limit is %u.", step.events.size(),
+                         kMaxGroups * 64);
         uint64_t wake = needs.dense ? denseGroups : 0;
         for (const MaterialUpdate& update : step.materials) {
             needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
@@ -123,16 +123,15 @@ bool addForgetNeeds(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
 
 void checkLimits(const BackendState& s, const FramePlan& plan, const FrameNeeds& needs) {
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are requested; the limit is %u.",
-                   plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
+        core::refuse("%zu burn maps are requested; the limit is %u.", plan.burnMaps.size(),
+                     ReadbackLayout::kMaxMaps);
     const auto maxIterations = uint64_t(s.buffers.capacity(kPoolIterations)) - kRowIteration - 1;
     if (needs.iterations > maxIterations)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
-                   (unsigned long long)needs.iterations, (unsigned long long)maxIterations);
+        core::refuse("A frame has %llu iterations; the limit is %llu.",
+                     (unsigned long long)needs.iterations, (unsigned long long)maxIterations);
     if (plan.volumes && plan.volumes->count > kMaxVolumeFlames)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%u volumetric flames are in a frame; the limit is %u.", plan.volumes->count,
-                   kMaxVolumeFlames);
+        core::refuse("%u volumetric flames are in a frame; the limit is %u.", plan.volumes->count,
+                     kMaxVolumeFlames);
 }
 
 // Which passes have anything to do.

@@ -8,47 +8,40 @@ namespace fw::gpu::vk {
 
 void FrameRing::pace(const FwVulkanFrame& frame, bool outside) {
     using ull = unsigned long long;
-    if (!frame.commandBuffer)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::commandBuffer is null.");
+    if (!frame.commandBuffer) core::refuse("FwVulkanFrame::commandBuffer is null.");
     const uint32_t known = FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING;
     if (frame.flags & ~known)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::flags is 0x%x; 0x%x is known.",
-                   frame.flags, known);
-    if (frame.frameIndex == 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::frameIndex is 0; frames count from 1.");
+        core::refuse("FwVulkanFrame::flags is 0x%x; 0x%x is known.", frame.flags, known);
+    if (frame.frameIndex == 0) core::refuse("FwVulkanFrame::frameIndex is 0; frames count from 1.");
     if (outside && frame.frameIndex <= newestOutside_)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::frameIndex is %llu; it was %llu already, and grows by one.",
-                   ull(frame.frameIndex), ull(newestOutside_));
+        core::refuse("FwVulkanFrame::frameIndex is %llu; it was %llu already, and grows by one.",
+                     ull(frame.frameIndex), ull(newestOutside_));
     if (frame.frameIndex < newest_)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::frameIndex is %llu; it was %llu already, and never falls.",
-                   ull(frame.frameIndex), ull(newest_));
+        core::refuse("FwVulkanFrame::frameIndex is %llu; it was %llu already, and never falls.",
+                     ull(frame.frameIndex), ull(newest_));
     uint64_t completed = completed_;
     if (frame.flags & FW_FRAME_SLOT_PACING) {
         if (frame.framesInFlight == 0 || frame.framesInFlight > kMaxInFlight)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::framesInFlight is %u; the range is [1, %u].",
-                       frame.framesInFlight, kMaxInFlight);
+            core::refuse("FwVulkanFrame::framesInFlight is %u; the range is [1, %u].",
+                         frame.framesInFlight, kMaxInFlight);
         if (frame.frameSlot >= frame.framesInFlight)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameSlot is %u of %u in flight.",
-                       frame.frameSlot, frame.framesInFlight);
+            core::refuse("FwVulkanFrame::frameSlot is %u of %u in flight.", frame.frameSlot,
+                         frame.framesInFlight);
         // The slot is free again: the frame last recorded with it is done, and all before.
         if (hostSlots_[frame.frameSlot] < frame.frameIndex)
             completed = std::max(completed, hostSlots_[frame.frameSlot]);
         hostSlots_[frame.frameSlot] = frame.frameIndex;
     } else {
         if (frame.completedFrameIndex >= frame.frameIndex)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::completedFrameIndex is %llu; it must be below frameIndex "
-                       "%llu.",
-                       ull(frame.completedFrameIndex), ull(frame.frameIndex));
+            core::refuse(
+                "FwVulkanFrame::completedFrameIndex is %llu; it must be below frameIndex "
+                "%llu.",
+                ull(frame.completedFrameIndex), ull(frame.frameIndex));
         if (frame.completedFrameIndex < completed_)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::completedFrameIndex is %llu; it was %llu already, and "
-                       "never falls.",
-                       ull(frame.completedFrameIndex), ull(completed_));
+            core::refuse(
+                "FwVulkanFrame::completedFrameIndex is %llu; it was %llu already, and "
+                "never falls.",
+                ull(frame.completedFrameIndex), ull(completed_));
         completed = frame.completedFrameIndex;
     }
     completed_ = completed;
@@ -74,10 +67,10 @@ FrameInFlight& FrameRing::slotFor(uint64_t frameIndex) {
         if (!best || cost(slot) < cost(*best)) best = &slot;
     }
     if (!best)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::frameIndex is %llu with %llu complete; at most %u frames may "
-                   "be in flight.",
-                   (unsigned long long)frameIndex, (unsigned long long)completed_, kMaxInFlight);
+        core::refuse(
+            "FwVulkanFrame::frameIndex is %llu with %llu complete; at most %u frames may "
+            "be in flight.",
+            (unsigned long long)frameIndex, (unsigned long long)completed_, kMaxInFlight);
     best->timers.create(device_);
     best->timers.forget();
     best->frameIndex = frameIndex;

@@ -13,9 +13,9 @@
 
 namespace fw::gpu::vk {
 
-struct TexelsAt {  // the state of an object's texels in a readback
-    uint32_t object = 0, count = 0;
-    uint64_t ticksAt = 0, heatAt = 0;  // bytes
+struct ObjectAt {  // an object's state in a readback: its texels, and its tiles if there are any
+    uint32_t object = 0, texels = 0, tiles = 0;
+    uint64_t ticksAt = 0, heatAt = 0, tilesAt = 0, tileHeatAt = 0;  // bytes
     bool heat = false;
 };
 
@@ -28,12 +28,12 @@ struct ReadbackLayout {  // where the pieces of a frame's readback lie
              rows = 0;  // counters rows: the first iteration's, and the list's at the end
     uint32_t burnParity = 0, predictParity = 0, hotParity = 0;  // as the frame leaves them
     static constexpr uint32_t kMaxMaps = 64;
-    std::array<TexelsAt, kMaxMaps> maps{};
+    std::array<ObjectAt, kMaxMaps> maps{};
     uint32_t mapCount = 0;
     bool hasBias = false;    // of refinement
     bool hasQuads = false;   // a view's were made
     bool hasImages = false;  // where they are is the world's: one frame's at a time
-    [[nodiscard]] std::span<const TexelsAt> texelMaps() const noexcept {
+    [[nodiscard]] std::span<const ObjectAt> burnMaps() const noexcept {
         return std::span(maps).first(mapCount);
     }
 };

@@ -141,9 +141,8 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
     BackendState& s = *state_;
     const uint32_t most = s.device.properties.limits.maxImageDimension2D;
     if (width > most || height > most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The image is %u x %u pixels; the device's maxImageDimension2D is %u.", width,
-                   height, most);
+        core::refuse("The image is %u x %u pixels; the device's maxImageDimension2D is %u.", width,
+                     height, most);
     ImageEntry& entry = slotOf(s.scene.images, slot);
     const uint32_t mips = mipsOf(width, height);
     const auto sizeOf = [&](uint32_t mip) {

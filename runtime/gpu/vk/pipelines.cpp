@@ -34,26 +34,26 @@ bool hasDepthAspect(VkFormat format) noexcept {
 template <class Info>
 void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
     const auto differs = [](const char* field, uint32_t given, const char* where, uint32_t has) {
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::%s is %u and the pass of renderPassInfo has %u %s; give %u, "
-                   "or the info of the pass in renderPass.",
-                   field, given, has, where, has);
+        core::refuse(
+            "FwVulkanTargetDef::%s is %u and the pass of renderPassInfo has %u %s; give %u, "
+            "or the info of the pass in renderPass.",
+            field, given, has, where, has);
     };
     if (def.subpass >= info.subpassCount)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::subpass is %u and the pass of renderPassInfo has %u; it is "
-                   "below that.",
-                   def.subpass, info.subpassCount);
+        core::refuse(
+            "FwVulkanTargetDef::subpass is %u and the pass of renderPassInfo has %u; it is "
+            "below that.",
+            def.subpass, info.subpassCount);
     const auto& subpass = info.pSubpasses[def.subpass];
     if (def.colorAttachmentCount != subpass.colorAttachmentCount)
         differs("colorAttachmentCount", def.colorAttachmentCount,
                 "colour attachments in the subpass", subpass.colorAttachmentCount);
     const uint32_t color = subpass.pColorAttachments[0].attachment;
     if (color >= info.attachmentCount)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::renderPassInfo: subpass %u does not use its first colour "
-                   "attachment, the one that we write.",
-                   def.subpass);
+        core::refuse(
+            "FwVulkanTargetDef::renderPassInfo: subpass %u does not use its first colour "
+            "attachment, the one that we write.",
+            def.subpass);
     const auto& image = info.pAttachments[color];
     if (def.colorFormat != image.format)
         differs("colorFormat", uint32_t(def.colorFormat), "as its first colour attachment's format",
@@ -66,8 +66,7 @@ void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
                                : VK_ATTACHMENT_UNUSED;
     if (def.depthMode == FW_DEPTH_NONE || def.depthMode == FW_DEPTH_SAMPLED) return;
     if (depth >= info.attachmentCount)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwVulkanTargetDef::depthMode is %u and subpass %u of renderPassInfo has no depth "
             "attachment; use FW_DEPTH_NONE (0) or FW_DEPTH_SAMPLED (3).",
             def.depthMode, def.subpass);
@@ -78,8 +77,7 @@ void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
 
 void checkAgainstPass(const FwVulkanTargetDef& def) {
     if (def.flags & FW_TARGET_COMPOSITE)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwVulkanTargetDef::renderPassInfo is given with FW_TARGET_COMPOSITE; that pass is "
             "ours, it is null there.");
     VkStructureType type{};
@@ -89,14 +87,14 @@ void checkAgainstPass(const FwVulkanTargetDef& def) {
     else if (type == VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO_2)
         checkAgainst(def, *static_cast<const VkRenderPassCreateInfo2*>(def.renderPassInfo));
     else
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::renderPassInfo has sType %d; it is a VkRenderPassCreateInfo "
-                   "(38) or a VkRenderPassCreateInfo2 (1000109004).",
-                   int(type));
+        core::refuse(
+            "FwVulkanTargetDef::renderPassInfo has sType %d; it is a VkRenderPassCreateInfo "
+            "(38) or a VkRenderPassCreateInfo2 (1000109004).",
+            int(type));
 }
 
 [[noreturn]] void refuse(const char* name, unsigned value, const char* limit) {
-    core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanTargetDef::%s is %u; %s.", name, value, limit);
+    core::refuse("FwVulkanTargetDef::%s is %u; %s.", name, value, limit);
 }
 
 void checkFlags(const FwVulkanTargetDef& def) {
@@ -108,12 +106,11 @@ void checkFlags(const FwVulkanTargetDef& def) {
         refuse("flags", def.flags,
                "FW_TARGET_HALF_EFFECTS needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED");
     if (composite && def.renderPass)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
-                   "ours, it is null there.");
+        core::refuse(
+            "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
+            "ours, it is null there.");
     if (!composite && !def.renderPass)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::renderPass is null without FW_TARGET_COMPOSITE.");
+        core::refuse("FwVulkanTargetDef::renderPass is null without FW_TARGET_COMPOSITE.");
 }
 
 void checkAttachments(const Device& device, const FwVulkanTargetDef& def) {
@@ -134,9 +131,8 @@ void checkAttachments(const Device& device, const FwVulkanTargetDef& def) {
     if (def.depthMode == FW_DEPTH_NONE && def.depthFormat != VK_FORMAT_UNDEFINED && composite)
         refuse("depthFormat", def.depthFormat, "it is VK_FORMAT_UNDEFINED with FW_DEPTH_NONE");
     if (def.depthMode != FW_DEPTH_NONE && def.depthFormat == VK_FORMAT_UNDEFINED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthFormat is VK_FORMAT_UNDEFINED but depthMode is %u.",
-                   def.depthMode);
+        core::refuse("FwVulkanTargetDef::depthFormat is VK_FORMAT_UNDEFINED but depthMode is %u.",
+                     def.depthMode);
 }
 
 void checkFormats(const Device& device, const FwVulkanTargetDef& def, FwOutputEncoding encoding) {
@@ -158,17 +154,16 @@ void checkFormats(const Device& device, const FwVulkanTargetDef& def, FwOutputEn
                        samples ? "cannot sample it" : "has no such depth attachment");
     }
     if (encoding == FW_OUTPUT_AUTO)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwVulkanTargetDef::encoding is FW_OUTPUT_AUTO (3) and colorFormat is %d, which is "
             "not known to be float, sRGB or UNORM; name the encoding: FW_OUTPUT_LINEAR (0), "
             "FW_OUTPUT_SRGB_VIEW (1) or FW_OUTPUT_DISPLAY_UNORM (2).",
             int(def.colorFormat));
     if (def.depthMode != FW_DEPTH_NONE && !hasDepthAspect(def.depthFormat))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthFormat is %d, which has no depth; give a format with a "
-                   "depth aspect, as VK_FORMAT_D32_SFLOAT (126).",
-                   int(def.depthFormat));
+        core::refuse(
+            "FwVulkanTargetDef::depthFormat is %d, which has no depth; give a format with a "
+            "depth aspect, as VK_FORMAT_D32_SFLOAT (126).",
+            int(def.depthFormat));
 }
 
 void checkSamples(const Device& device, const FwVulkanTargetDef& def, uint32_t depthSamples) {

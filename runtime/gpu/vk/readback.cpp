@@ -18,31 +18,32 @@ struct Places {
     uint64_t end = 0;
     uint64_t take(uint64_t bytes) noexcept { return std::exchange(end, alignUp(end + bytes, 16)); }
     ReadbackLayout::Piece piece(uint64_t bytes) noexcept { return {take(bytes), bytes}; }
-    TexelsAt texels(const ObjectEntry& entry, uint32_t object) noexcept {
-        TexelsAt out;
-        out.object = object;
-        out.count = entry.texelCount();
-        out.ticksAt = take(uint64_t(out.count) * sizeof(uint32_t));
+    ObjectAt object(const BackendState& s, uint32_t slot, bool withTiles) noexcept {
+        const ObjectEntry& entry = s.scene.objects[slot];
+        ObjectAt out;
+        out.object = slot;
+        out.texels = entry.texelCount();
+        out.ticksAt = take(uint64_t(out.texels) * sizeof(uint32_t));
         out.heat = (entry.record.flags & kObjectHeat) != 0;
-        if (out.heat) out.heatAt = take(uint64_t(out.count) * sizeof(uvec2));
+        if (out.heat) out.heatAt = take(uint64_t(out.texels) * sizeof(uvec2));
+        if (!withTiles) return out;
+        out.tiles = entry.record.tileCount;
+        out.tilesAt = take(uint64_t(out.tiles) * sizeof(TileState));
+        out.tileHeatAt = take(uint64_t(out.tiles) * sizeof(TileHeat));
         return out;
     }
 };
 
-void copyTexels(FrameRecorder& r, const BurnObject& object, const TexelsAt& texels) {
-    r.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * sizeof(uint32_t), texels.ticksAt,
-              uint64_t(texels.count) * sizeof(uint32_t));
-    if (texels.heat)
-        r.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2), texels.heatAt,
-                  uint64_t(texels.count) * sizeof(uvec2));
-}
-
-void copyImage(FrameRecorder& r, const BurnObject& object, const ImageAt& at) {
-    copyTexels(r, object, at.texels);
-    r.copyOut(FW_BIND_TILE_STATE, uint64_t(object.worldTileBase) * sizeof(TileState), at.tilesAt,
-              uint64_t(at.tiles) * sizeof(TileState));
-    r.copyOut(FW_BIND_TILE_HEAT, uint64_t(object.worldTileBase) * sizeof(TileHeat), at.tileHeatAt,
-              uint64_t(at.tiles) * sizeof(TileHeat));
+void copyObject(FrameRecorder& r, const BackendState& s, const ObjectAt& at) {
+    const BurnObject& object = s.scene.objects[at.object].record;
+    const auto copy = [&]<class T>(uint32_t resource, uint32_t first, uint64_t to, uint32_t count) {
+        if (count > 0)
+            r.copyOut(resource, uint64_t(first) * sizeof(T), to, uint64_t(count) * sizeof(T));
+    };
+    copy.operator()<uint32_t>(FW_BIND_STATE, object.stateBase, at.ticksAt, at.texels);
+    copy.operator()<uvec2>(FW_BIND_HEAT, object.heatBase, at.heatAt, at.heat ? at.texels : 0);
+    copy.operator()<TileState>(FW_BIND_TILE_STATE, object.worldTileBase, at.tilesAt, at.tiles);
+    copy.operator()<TileHeat>(FW_BIND_TILE_HEAT, object.worldTileBase, at.tileHeatAt, at.tiles);
 }
 
 // The array at byte `at` of a readback, where it lies.
@@ -58,44 +59,15 @@ void take(std::pmr::vector<T>& out, const std::byte* from, const ReadbackLayout:
     out.assign(given.begin(), given.end());
 }
 
-void takeMaps(ReadbackResults& results, const std::byte* from, const ReadbackLayout& layout) {
-    size_t texels = 0, heatTexels = 0;
-    for (const TexelsAt& map : layout.texelMaps()) {
-        texels += map.count;
-        heatTexels += map.heat ? map.count : 0;
-    }
-    results.givenTexels.clear();
-    results.givenHeat.clear();
-    results.givenMaps.clear();
-    results.givenTexels.reserve(texels);
-    results.givenHeat.reserve(heatTexels);
-    const auto append = [&]<class T>(std::pmr::vector<T>& to, uint64_t at, uint32_t count) {
-        const std::span<const T> given = arrayAt<T>(from, at, count);
-        to.insert(to.end(), given.begin(), given.end());
-        return std::span<const T>(to).last(count);
-    };
-    for (const TexelsAt& map : layout.texelMaps()) {
-        BurnMap& given = results.givenMaps.emplace_back();
-        given.object = map.object;
-        given.ticks = append(results.givenTexels, map.ticksAt, map.count);
-        if (map.heat) given.heat = append(results.givenHeat, map.heatAt, map.count);
-    }
-}
-
-// As they lie in the readback buffer, which is not written again before the next frame.
-std::span<const ObjectImage> takeImages(ReadbackResults& results, const std::byte* from) {
-    results.givenImages.clear();
-    for (const ImageAt& at : results.imageLayout) {
-        ObjectImage& image = results.givenImages.emplace_back();
-        image.object = at.texels.object;
-        image.ticks = arrayAt<uint32_t>(from, at.texels.ticksAt, at.texels.count);
-        if (at.texels.heat) image.heat = arrayAt<uvec2>(from, at.texels.heatAt, at.texels.count);
-        image.tiles = arrayAt<TileState>(from, at.tilesAt, at.tiles);
-        image.tileHeat = arrayAt<TileHeat>(from, at.tileHeatAt, at.tiles);
-        if (image.object < results.givenObjects.size())
-            image.counters = results.givenObjects[image.object];
-    }
-    return results.givenImages;
+// As it lies in the readback buffer, which is not written again before the next frame.
+ObjectImage objectFrom(const std::byte* from, const ObjectAt& at) noexcept {
+    ObjectImage image;
+    image.object = at.object;
+    image.ticks = arrayAt<uint32_t>(from, at.ticksAt, at.texels);
+    if (at.heat) image.heat = arrayAt<uvec2>(from, at.heatAt, at.texels);
+    image.tiles = arrayAt<TileState>(from, at.tilesAt, at.tiles);
+    image.tileHeat = arrayAt<TileHeat>(from, at.tileHeatAt, at.tiles);
+    return image;
 }
 
 // An object's counters decide how it is drawn from now on.
@@ -156,9 +128,17 @@ void takeReadback(BackendState& s, FrameInFlight& slot, const PendingReadback& o
     take(results.givenAnswers, from, layout.answers);
     take(results.givenLights, from, layout.lights);
     std::erase_if(results.givenLights, [](const BurnLight& light) { return !(light.power > 0); });
-    takeMaps(results, from, layout);
+    results.givenMaps.clear();
+    for (const ObjectAt& map : layout.burnMaps())
+        results.givenMaps.push_back(objectFrom(from, map));
+    results.givenImages.clear();
     if (layout.hasImages && results.imagesFrame == one.ringFrame)
-        results.given.images = takeImages(results, from);
+        for (const ObjectAt& at : results.imageLayout) {
+            ObjectImage& image = results.givenImages.emplace_back(objectFrom(from, at));
+            if (image.object < results.givenObjects.size())
+                image.counters = results.givenObjects[image.object];
+        }
+    results.given.images = results.givenImages;
     const size_t objects = std::min(results.givenObjects.size(), s.scene.objects.size());
     for (uint32_t i = 0; i < objects; ++i)
         updateFromCounters(s, i, results.givenObjects[i], one.endTick);
@@ -198,18 +178,12 @@ ReadbackLayout layoutReadback(BackendState& s, const FramePlan& plan, uint64_t i
     FW_ASSERT(plan.burnMaps.size() <= ReadbackLayout::kMaxMaps, "%zu burn maps",
               plan.burnMaps.size());
     for (const uint32_t object : plan.burnMaps)
-        layout.maps[layout.mapCount++] = places.texels(s.scene.objects[object], object);
+        layout.maps[layout.mapCount++] = places.object(s, object, false);
     layout.hasImages = !plan.images.empty();
     if (layout.hasImages) {
         s.results.imageLayout.clear();
-        for (const uint32_t object : plan.images) {
-            const ObjectEntry& entry = s.scene.objects[object];
-            ImageAt& at = s.results.imageLayout.emplace_back();
-            at.texels = places.texels(entry, object);
-            at.tiles = entry.record.tileCount;
-            at.tilesAt = places.take(uint64_t(at.tiles) * sizeof(TileState));
-            at.tileHeatAt = places.take(uint64_t(at.tiles) * sizeof(TileHeat));
-        }
+        for (const uint32_t object : plan.images)
+            s.results.imageLayout.push_back(places.object(s, object, true));
         s.results.imagesFrame = s.open.ringFrame;
     }
     bytes = places.end;
@@ -244,11 +218,9 @@ void recordReadback(BackendState& s, FrameInFlight& slot) {
     copyShown();
     copy(FW_BIND_FIELD_COUNTERS, layout.fields);
     copy(FW_BIND_ROOM_AIR, layout.rooms);
-    for (const TexelsAt& map : layout.texelMaps())
-        copyTexels(r, s.scene.objects[map.object].record, map);
+    for (const ObjectAt& map : layout.burnMaps()) copyObject(r, s, map);
     if (layout.hasImages)
-        for (const ImageAt& at : s.results.imageLayout)
-            copyImage(r, s.scene.objects[at.texels.object].record, at);
+        for (const ObjectAt& at : s.results.imageLayout) copyObject(r, s, at);
     slot.readbackPending = true;
 }
 

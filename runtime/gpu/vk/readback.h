@@ -7,7 +7,6 @@
 namespace fw::gpu::vk {
 
 struct BackendState;
-struct ObjectEntry;
 
 struct PendingReadback {  // in the order of frames
     uint64_t ringFrame = 0;
@@ -17,19 +16,10 @@ struct PendingReadback {  // in the order of frames
     uint32_t endTick = 0;
 };
 
-// An object's image in a frame's readback.
-struct ImageAt {
-    TexelsAt texels;
-    uint32_t tiles = 0;
-    uint64_t tilesAt = 0, tileHeatAt = 0;  // bytes
-};
-
 struct ReadbackResults {
     explicit ReadbackResults(std::pmr::memory_resource* pmr)
         : givenObjects(pmr),
           givenAnswers(pmr),
-          givenTexels(pmr),
-          givenHeat(pmr),
           givenMaps(pmr),
           givenLights(pmr),
           givenFields(pmr),
@@ -44,16 +34,14 @@ struct ReadbackResults {
     Readback given;
     std::pmr::vector<ObjectCounters> givenObjects;
     std::pmr::vector<ProbeAnswer> givenAnswers;
-    std::pmr::vector<uint32_t> givenTexels;
-    std::pmr::vector<uvec2> givenHeat;
-    std::pmr::vector<BurnMap> givenMaps;
+    std::pmr::vector<ObjectImage> givenMaps;
     std::pmr::vector<BurnLight> givenLights;
     std::pmr::vector<FieldCounters> givenFields;
     std::pmr::vector<RoomAir> givenRooms;  // empty: no step had any yet
     std::pmr::vector<PassTime> times;
     float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
-    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
-    uint64_t imagesFrame = 0;               // ring frame, of that
+    std::pmr::vector<ObjectAt> imageLayout;  // of the last frame that took images
+    uint64_t imagesFrame = 0;                // ring frame, of that
     std::pmr::vector<ObjectImage> givenImages;
 };
 

@@ -177,9 +177,8 @@ RecordTarget BackendState::recordTarget(FrameInFlight& slot, VkCommandBuffer com
 uint32_t BackendState::pushView(FrameInFlight& slot, const FwView& view,
                                 const VkViewport& viewport) {
     if (slot.views == FrameRing::kMaxViews)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "A frame is drawn with more than %u views; that is the limit.",
-                   FrameRing::kMaxDrawn);
+        core::refuse("A frame is drawn with more than %u views; that is the limit.",
+                     FrameRing::kMaxDrawn);
     ViewInput input;
     input.view = &view;
     input.viewport[0] = viewport.x;
