@@ -478,7 +478,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->live = true;
     s.resetObject(*object, slot);
     if (!object->extended.empty()) ++s.extendedObjects;
-    s.counts.add(*object);
+    s.countObject(*object, true);
     s.countLists();
     s.objects[slot] = std::move(object);
 }
@@ -499,7 +499,7 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     FW_ASSERT(object->extended.empty() || s.extendedObjects > 0);
     if (!object->extended.empty()) --s.extendedObjects;
     s.releaseTiles(first, count);
-    s.counts.remove(*object);
+    s.countObject(*object, false);
     s.objects[slot] = core::Owned<CpuObject>();
 }
 
@@ -674,38 +674,12 @@ std::span<const PassTime> CpuBackend::passTimes() {
     return {state_->times.data(), state_->timesCount};
 }
 
-namespace {
-
-// Bytes of vectors by `sizeOf(vector)`.
-template <class SizeOf>
-uint64_t stateBytes(const CpuObject& object, SizeOf sizeOf) noexcept {
-    const auto bytes = [&](const auto&... of) {
-        return ((uint64_t(sizeOf(of)) * sizeof of[0]) + ...);
-    };
-    return bytes(object.state, object.slowness, object.extended, object.heat);
-}
-uint64_t stateBytes(const CpuObject& object) noexcept {
-    return stateBytes(object, [](const auto& of) { return of.size(); });
-}
-uint64_t stateCapacity(const CpuObject& object) noexcept {
-    return stateBytes(object, [](const auto& of) { return of.capacity(); });
-}
-uint64_t objectBytes(const CpuObject& object) noexcept {
-    return sizeof(CpuObject) + object.sources.capacity() * sizeof(FireSource);
-}
-
-}  // namespace
-
-void CpuCounts::add(const CpuObject& object) noexcept {
-    this->stateBytes += cpu::stateBytes(object);
-    this->stateCapacity += cpu::stateCapacity(object);
-    objects += objectBytes(object);
-}
-
-void CpuCounts::remove(const CpuObject& object) noexcept {
-    this->stateBytes -= cpu::stateBytes(object);
-    this->stateCapacity -= cpu::stateCapacity(object);
-    objects -= objectBytes(object);
+void CpuBackend::State::countObject(const CpuObject& object, bool comes) noexcept {
+    const auto bytesOf = [](const auto&... of) { return ((of.capacity() * sizeof of[0]) + ...); };
+    const uint64_t texels = bytesOf(object.state, object.slowness, object.extended, object.heat);
+    const uint64_t rest = sizeof object + bytesOf(object.sources);
+    counts.texels += comes ? texels : 0 - texels;
+    counts.objects += comes ? rest : 0 - rest;
 }
 
 void CpuBackend::State::countLists() noexcept {
@@ -723,7 +697,7 @@ void CpuBackend::State::countLists() noexcept {
 
 void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const {
     const CpuCounts& counts = state_->counts;
-    out.push_back({"cpu texel states", counts.stateBytes, counts.stateCapacity});
+    out.push_back({"cpu texel states", counts.texels, counts.texels});
     out.push_back({"cpu objects", counts.objects, counts.objects});
     out.push_back({"cpu neighbours and contacts", counts.exchange, counts.exchange});
     out.push_back({"cpu readbacks", counts.readbacks, counts.readbacks});

@@ -129,11 +129,8 @@ enum Timer : uint32_t {
 
 // Figures of memoryRows, which any thread calls.
 struct CpuCounts {
-    std::atomic<uint64_t> stateBytes{0}, stateCapacity{0};        // of all objects' texels
-    std::atomic<uint64_t> tiles{0}, tileCapacity{0};              // world tiles
-    std::atomic<uint64_t> objects{0}, exchange{0}, readbacks{0};  // bytes
-    void add(const CpuObject& object) noexcept;
-    void remove(const CpuObject& object) noexcept;
+    std::atomic<uint64_t> texels{0}, objects{0}, exchange{0}, readbacks{0};  // bytes
+    std::atomic<uint64_t> tiles{0}, tileCapacity{0};                         // world tiles
 };
 
 struct CpuBackend::State {
@@ -187,7 +184,9 @@ struct CpuBackend::State {
     void answerProbes(std::span<const Probe> probes, std::span<ProbeAnswer> answers) const noexcept;
     void finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept;
     void listTimes(uint64_t frameIndex) noexcept;
-    void countLists() noexcept;  // for memoryRows, which any thread may call
+    // For memoryRows, which any thread may call.
+    void countObject(const CpuObject& object, bool comes) noexcept;
+    void countLists() noexcept;
     void applyEvents(const StepPlan& step) noexcept;
     void wake(const StepPlan& step) noexcept;
     // cpu_heat.cpp

@@ -12,20 +12,9 @@
 #include "gpu/vk/view_draws.h"
 #include "gpu/vk/vk_backend.h"
 
-#include "core/owned.h"
-
 #include <memory>
 
 namespace fw::gpu::vk {
-
-struct Context::State {
-    State(const FwVulkanHost* host, uint64_t budget, std::pmr::memory_resource* memory,
-          const core::Log& logTo)
-        : device(host, logTo), deviceMemory(device, budget, memory), pipelines(device, memory) {}
-    Device device;
-    DeviceMemory deviceMemory;
-    Pipelines pipelines;
-};
 
 struct OpenFrame {
     bool open = false, ran = false, recording = false, readback = false;
@@ -40,13 +29,13 @@ struct OpenFrame {
 };
 
 struct BackendState {
-    BackendState(Context::State& contextState, const WorldLimits& limits,
-                 std::pmr::memory_resource* pmr, const core::Log& logTo);
+    BackendState(Context& shared, const WorldLimits& limits, std::pmr::memory_resource* pmr,
+                 const core::Log& logTo);
     ~BackendState();
     BackendState(const BackendState&) = delete;
     BackendState& operator=(const BackendState&) = delete;
 
-    Context::State& context;
+    Context& context;
     Device& device;
     DeviceMemory& deviceMemory;
     WorldLimits limits;

@@ -1,35 +1,10 @@
-// A host's device and the parts that its worlds share: memory, pipelines, targets.
-#include "gpu/vk/backend_state.h"
+// The parts of a Context that are tables: encodings of formats, and what hosts are told of it.
+#include "gpu/vk/vk_backend.h"
 
 #include <algorithm>
 #include <cstring>
 
 namespace fw::gpu::vk {
-
-Context::Context(const FwVulkanHost* host, uint64_t gpuMemoryBudget,
-                 std::pmr::memory_resource* memory, const core::Log& log)
-    : memory_(memory) {
-    state_ = std::pmr::polymorphic_allocator<>(memory).new_object<State>(host, gpuMemoryBudget,
-                                                                         memory, log);
-}
-
-Context::~Context() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
-
-void Context::prepare() { state_->pipelines.prepare(); }
-bool Context::ready() const noexcept { return state_->pipelines.ready(); }
-FwTargetId Context::registerTarget(const FwVulkanTargetDef& def) {
-    return state_->pipelines.registerTarget(def);
-}
-void Context::unregisterTarget(FwTargetId id) { state_->pipelines.unregisterTarget(id); }
-void Context::notifyDeviceLost() noexcept { state_->device.notifyLost(); }
-bool Context::deviceLost() const noexcept { return state_->device.lost(); }
-bool Context::ownDevice() const noexcept { return state_->device.own; }
-bool Context::isTarget(FwTargetId id) noexcept { return state_->pipelines.isTarget(id); }
-bool Context::targetReady(FwTargetId id, FwPipelineProgress& progress) {
-    return state_->pipelines.targetReady(id, progress);
-}
-
-void Context::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->deviceMemory.rows(out); }
 
 FwOutputEncoding Context::encodingOf(VkFormat color) noexcept {
     static constexpr VkFormat kLinear[] = {VK_FORMAT_R16_SFLOAT,
@@ -79,13 +54,12 @@ FwOutputEncoding Context::encodingOf(VkFormat color) noexcept {
 }
 
 void Context::fillInfo(FwContextInfo& info) const noexcept {
-    const Device& device = state_->device;
     info.apiVersion = device.apiVersion;
     info.ownDevice = device.own ? 1 : 0;
     info.gpuTimers = device.timestamps ? 1 : 0;
     info.debugLabels = device.debugUtils ? 1 : 0;
-    info.gpuMemoryUsed = state_->deviceMemory.used();
-    info.gpuMemoryBudget = state_->deviceMemory.budget();
+    info.gpuMemoryUsed = deviceMemory.used();
+    info.gpuMemoryBudget = deviceMemory.budget();
     std::strncpy(info.deviceName, device.properties.deviceName, sizeof info.deviceName - 1);
     info.deviceName[sizeof info.deviceName - 1] = 0;
 }

@@ -21,13 +21,8 @@ PassSets::~PassSets() {
 }
 
 VkDescriptorSet PassSets::compute(size_t pass, uint32_t view) const {
-    const VkDescriptorSet own = views_[view].compute[pass];
-    return own ? own : views_[0].compute[pass];
-}
-
-VkDescriptorSet PassSets::draw(size_t pass, uint32_t view) const {
     const auto setOf = [pass](const OfView& one) {
-        return pass < one.draw.size() ? one.draw[pass] : VkDescriptorSet(VK_NULL_HANDLE);
+        return pass < one.sets.size() ? one.sets[pass] : VkDescriptorSet(VK_NULL_HANDLE);
     };
     const VkDescriptorSet own = setOf(views_[view]);
     return own ? own : setOf(views_[0]);
@@ -39,8 +34,7 @@ void PassSets::drop(uint32_t view, uint64_t lastFrame) {
     retired_.promise(1);
     retired_.push(lastFrame, {.pool = std::exchange(of.pool, VK_NULL_HANDLE)});
     of.generation = 0;
-    of.compute.clear();
-    of.draw.clear();
+    of.sets.clear();
 }
 
 void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const WorldBuffers& buffers,
@@ -77,39 +71,34 @@ void PassSets::update(const WorldBuffers& buffers, VkBuffer views, VkDeviceSize 
                       uint64_t lastFrame, uint32_t view) {
     OfView& of = views_[view];
     if (of.generation == buffers.generation()) return;
-    const size_t computeCount = computePasses().size(), drawCount = drawPasses().size();
-    of.compute.resize(computeCount);
-    of.draw.resize(drawCount);
+    const std::span<const PassObjects> passes = pipelines_.passes();
+    of.sets.resize(passes.size());
     retired_.promise(1);
     constexpr size_t kMostSets = 128;
-    FW_ASSERT(computeCount + drawCount <= kMostSets, "%zu passes", computeCount + drawCount);
+    FW_ASSERT(passes.size() <= kMostSets, "%zu passes", passes.size());
     std::array<VkDescriptorSetLayout, kMostSets> layouts{};
     std::array<VkDescriptorSet, kMostSets> made{};
-    std::array<VkDescriptorSet*, kMostSets> places{};
-    std::array<std::span<const Use>, kMostSets> uses{};
+    std::array<size_t, kMostSets> numbers{};
     uint32_t sets = 0;
-    const auto add = [&](VkDescriptorSet& place, const PassObjects& pass) {
-        if (view > 0 && !pass.declared.isPerView()) return;
-        places[sets] = &place;
-        uses[sets] = pass.declared.uses();
-        layouts[sets++] = pass.setLayout;
-    };
-    for (size_t i = 0; i < computeCount; ++i) add(of.compute[i], pipelines_.compute(i));
-    for (size_t i = 0; i < drawCount; ++i) add(of.draw[i], pipelines_.draw(i));
+    for (size_t i = 0; i < passes.size(); ++i) {
+        if (view > 0 && !passes[i].declared.isPerView()) continue;
+        numbers[sets] = i;
+        layouts[sets++] = passes[i].setLayout;
+    }
     std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
                                                {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
                                                {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
                                                {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1}}};
     for (uint32_t i = 0; i < sets; ++i)
-        for (const Use& use : uses[i])
+        for (const Use& use : passes[numbers[i]].declared.uses())
             for (VkDescriptorPoolSize& size : sizes)
                 size.descriptorCount += size.type == descriptorSlot(use).type ? 1 : 0;
     const VkDescriptorPool pool =
         makeSets(device_, sizes, std::span(layouts).first(sets), std::span(made).first(sets));
     retired_.push(lastFrame, {.pool = std::exchange(of.pool, pool)});
     for (uint32_t i = 0; i < sets; ++i) {
-        *places[i] = made[i];
-        write(made[i], uses[i], buffers, views, viewBytes, view);
+        of.sets[numbers[i]] = made[i];
+        write(made[i], passes[numbers[i]].declared.uses(), buffers, views, viewBytes, view);
     }
     of.generation = buffers.generation();
 }

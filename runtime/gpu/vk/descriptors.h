@@ -22,16 +22,18 @@ class PassSets {
     // did nothing.
     void drop(uint32_t view, uint64_t lastFrame);
     [[nodiscard]] bool has(uint32_t view) const noexcept { return views_[view].generation != 0; }
-    [[nodiscard]] VkDescriptorSet compute(size_t pass, uint32_t view) const;
     // Null before the first update.
-    [[nodiscard]] VkDescriptorSet draw(size_t pass, uint32_t view) const;
+    [[nodiscard]] VkDescriptorSet compute(size_t pass, uint32_t view) const;
+    [[nodiscard]] VkDescriptorSet draw(size_t pass, uint32_t view) const {
+        return compute(computePasses().size() + pass, view);
+    }
 
  private:
     struct OfView {
-        explicit OfView(std::pmr::memory_resource* memory) : compute(memory), draw(memory) {}
+        explicit OfView(std::pmr::memory_resource* memory) : sets(memory) {}
         VkDescriptorPool pool = VK_NULL_HANDLE;
-        uint64_t generation = 0;                          // of the buffers; 0: there are no sets
-        std::pmr::vector<VkDescriptorSet> compute, draw;  // null: the first view's
+        uint64_t generation = 0;                 // of the buffers; 0: there are no sets
+        std::pmr::vector<VkDescriptorSet> sets;  // as Pipelines::passes; null: the first view's
     };
     void write(VkDescriptorSet set, std::span<const Use> uses, const WorldBuffers& buffers,
                VkBuffer views, VkDeviceSize viewBytes, uint32_t view) const;

@@ -36,7 +36,7 @@ StepPush pushOf(const FrameLists& lists, const StepRecord& step) {
     StepPush push{};
     setLists(lists, push);
     push.now = step.now;
-    push.stepShift = step.stepShift;
+    push.stepShift = step.substepShift;
     push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u) |
                     (step.capped ? kSwitchCapped : 0u) | (step.plays ? kSwitchPlayback : 0u);
     push.maxTiles = step.rules.maxTiles;
@@ -70,12 +70,12 @@ void recordLighting(bool capped, uint32_t& switches, const Grant& allotBudget, c
 template <class Record>
 void forWholeObjects(const StepRecord& step, const Record& record) {
     constexpr uint32_t kMostBetween = 16;
-    const auto count = uint32_t(step.allTiles != 0 ? step.eventList.size() : 0);
+    const auto count = uint32_t(step.allTiles != 0 ? step.events.size() : 0);
     for (uint32_t first = 0, end = 0; first < count; first = end) {
         end = first + 1;
-        if (!addressesAll(step.eventList[first])) continue;
+        if (!addressesAll(step.events[first])) continue;
         for (uint32_t i = end; i < count && i <= end + kMostBetween && i - first < kMaxGroups; ++i)
-            if (addressesAll(step.eventList[i])) end = i + 1;
+            if (addressesAll(step.events[i])) end = i + 1;
         record(first, end - first);
     }
 }
@@ -147,10 +147,10 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
         push.count = step.wakeGroups.count;
         if (!dense) r.dispatch(pass::wake, push, push.count);
     }
-    if (step.events.count) {
-        r.copyIn(step.events.at, FW_BIND_EVENTS, 0,
-                 uint64_t(step.events.count) * sizeof(TexelEvent));
-        push.count = step.events.count;
+    if (step.staged.count) {
+        r.copyIn(step.staged.at, FW_BIND_EVENTS, 0,
+                 uint64_t(step.staged.count) * sizeof(TexelEvent));
+        push.count = step.staged.count;
         lighting([&] {
             r.dispatchItems(pass::events, push, push.count);
             forWholeObjects(step, [&](uint32_t first, uint32_t rows) {
@@ -171,7 +171,7 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
             [&] { r.dispatchRow(pass::heat, push, kRowHot + lists.hotParity, RowPart::list); });
         lists.hotParity ^= 1;
     }
-    for (uint32_t k = 0; step.iterate && k < 1u << step.stepShift; ++k) {
+    for (uint32_t k = 0; step.iterate && k < 1u << step.substepShift; ++k) {
         push = pushOf(lists, step);
         push.iteration = k;
         push.count = step.wakeGroups.count;

@@ -40,23 +40,17 @@ struct ExtendedStep {  // one object whose texels an extension burns
     uint32_t object = 0, groups = 0, parity = 0;
 };
 
-struct StepRecord {
-    uint32_t now = 0, stepShift = 0, switches = 0;
-    bool iterate = true;  // false: the front is known to be empty
-    bool reduce = false;
-    bool heat = false;
-    bool rooms = false;  // their air, before heat
-    Staged events;
-    std::span<const TexelEvent> eventList;  // the same
+// A planned step without the passes that have nothing to do; `rules` lack the places of lists.
+struct StepRecord : StepPlan {
+    uint32_t switches = 0;
+    bool iterate = true;    // false: the front is known to be empty
+    Staged staged;          // the events
     uint32_t allTiles = 0;  // of the largest object that one addresses as a whole; 0: none does
     Staged wakeGroups;      // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
     std::span<const ExtendedStep> extended;
-    bool governed = false, capped = false, plays = false;
-    bool exchange = false;
-    ExchangePush rules{};  // of the exchange, but for the places of lists
-    uint32_t links = 0;    // contacts
-    bool parts = false;    // some mesh has parts that touch
+    uint32_t links = 0;  // contacts
+    bool parts = false;  // some mesh has parts that touch
 };
 
 // Runs in their buffer: `masked` fields, then the groups of each round of steps.

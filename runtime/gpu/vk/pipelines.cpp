@@ -379,11 +379,7 @@ void DrawPipeline::setBlend(const DrawPass& pass, const TargetKey& key) {
 }  // namespace
 
 Pipelines::Pipelines(Device& device, std::pmr::memory_resource* memory)
-    : device_(device),
-      memory_(memory),
-      compute_(memory),
-      draw_(memory),
-      targets_("Target", memory) {
+    : device_(device), memory_(memory), passes_(memory), targets_("Target", memory) {
     try {
         makeLayouts();
     } catch (...) {
@@ -399,13 +395,10 @@ void Pipelines::destroy() noexcept {
     for (uint32_t i = 0; i < targets_.slotCount(); ++i) {
         if (auto* target = targets_.at(i)) destroyTarget(**target);
     }
-    for (auto* passes : {&compute_, &draw_}) {
-        for (PassObjects& pass : *passes) {
-            device_.destroy(vk.DestroyPipeline, pass.pipeline);
-            device_.destroy(vk.DestroyPipelineLayout, pass.layout);
-            device_.destroy(vk.DestroyDescriptorSetLayout, pass.setLayout);
-        }
-        passes->clear();
+    for (PassObjects& pass : passes_) {
+        device_.destroy(vk.DestroyPipeline, pass.pipeline);
+        device_.destroy(vk.DestroyPipelineLayout, pass.layout);
+        device_.destroy(vk.DestroyDescriptorSetLayout, pass.setLayout);
     }
     device_.destroy(vk.DestroyDescriptorSetLayout, imageLayout_);
     device_.destroy(vk.DestroySampler, imageSampler_);
@@ -465,18 +458,18 @@ void Pipelines::makeLayouts() {
         layout.pPushConstantRanges = &range;
         objects.layout = device_.create(vk.CreatePipelineLayout, layout, "vkCreatePipelineLayout");
     };
-    compute_.resize(computePasses().size());
-    for (size_t i = 0; i < compute_.size(); ++i) {
-        const ComputePass& pass = computePasses()[i];
-        compute_[i].declared = interfaceOf(pass, device_.texels, memory_);
-        make(compute_[i], pass.pushBytes, VK_SHADER_STAGE_COMPUTE_BIT, compute_[i].declared.sets());
+    passes_.resize(computePasses().size() + drawPasses().size());
+    PassObjects* objects = passes_.data();
+    for (const ComputePass& pass : computePasses()) {
+        objects->declared = interfaceOf(pass, device_.texels, memory_);
+        make(*objects, pass.pushBytes, VK_SHADER_STAGE_COMPUTE_BIT, objects->declared.sets());
+        ++objects;
     }
-    draw_.resize(drawPasses().size());
-    for (size_t i = 0; i < draw_.size(); ++i) {
-        const DrawPass& pass = drawPasses()[i];
-        draw_[i].declared = interfaceOf(pass, device_.texels, memory_);
-        make(draw_[i], pass.pushBytes, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+    for (const DrawPass& pass : drawPasses()) {
+        objects->declared = interfaceOf(pass, device_.texels, memory_);
+        make(*objects, pass.pushBytes, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
              pass.softShader ? 4 : 3);
+        ++objects;
     }
 }
 
@@ -519,8 +512,8 @@ void Pipelines::prepare() {
     const std::lock_guard lock(prepares_);
     if (ready()) return;
     const Table& vk = device_.table;
-    for (size_t i = 0; i < compute_.size(); ++i) {
-        PassObjects& objects = compute_[i];
+    for (size_t i = 0; i < computePasses().size(); ++i) {
+        PassObjects& objects = passes_[i];
         if (objects.pipeline) continue;
         const ComputePass& pass = computePasses()[i];
         Typed<VkComputePipelineCreateInfo> info;
@@ -587,7 +580,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
                                Modules& modules) const {
     const DrawPass& pass = drawPasses()[number];
     DrawPipeline state(pass, key);
-    state.info.layout = draw_[number].layout;
+    state.info.layout = draw(number).layout;
     state.info.renderPass = renderPass;
     const bool several = key.samples > 1 && pass.multisampledVertex;
     state.stages[0].module = modules.get(several ? pass.multisampledVertex : pass.vertexShader);
@@ -708,7 +701,7 @@ bool Pipelines::targetReady(FwTargetId id, FwPipelineProgress& progress) {
         total = target.total;
     }
     progress.made = made + computeMade_;
-    progress.total = std::max(progress.made, total + uint32_t(compute_.size()));
+    progress.total = std::max(progress.made, total + uint32_t(computePasses().size()));
     return ready() && made >= total;
 }
 

@@ -86,8 +86,12 @@ class Pipelines {
         return targets_.find(id) != nullptr;
     }
 
-    [[nodiscard]] const PassObjects& compute(size_t pass) const { return compute_[pass]; }
-    [[nodiscard]] const PassObjects& draw(size_t pass) const { return draw_[pass]; }
+    // All passes: of computePasses(), then of drawPasses().
+    [[nodiscard]] std::span<const PassObjects> passes() const { return passes_; }
+    [[nodiscard]] const PassObjects& compute(size_t pass) const { return passes_[pass]; }
+    [[nodiscard]] const PassObjects& draw(size_t pass) const {
+        return passes_[computePasses().size() + pass];
+    }
     [[nodiscard]] VkDescriptorSetLayout imageSetLayout() const { return imageLayout_; }
     [[nodiscard]] VkSampler imageSampler() const { return imageSampler_; }
     [[nodiscard]] VkSampler depthSampler() const { return depthSampler_; }
@@ -116,12 +120,12 @@ class Pipelines {
 
     Device& device_;
     std::pmr::memory_resource* memory_;
-    std::pmr::vector<PassObjects> compute_, draw_;
+    std::pmr::vector<PassObjects> passes_;
     VkDescriptorSetLayout imageLayout_ = VK_NULL_HANDLE;
     VkSampler imageSampler_ = VK_NULL_HANDLE, depthSampler_ = VK_NULL_HANDLE;
     std::array<VkRenderPass, kHalfColors.size()> halfPasses_{};
     VkRenderPass halfDepthPass_ = VK_NULL_HANDLE;
-    std::mutex prepares_;  // of compute_, until ready_
+    std::mutex prepares_;  // of compute pipelines, until ready_
     std::atomic<uint32_t> computeMade_{0};
     std::atomic<uint32_t> drawMade_{0}, drawTotal_{0};  // of all targets, those being made included
     std::mutex makes_;  // taken before mutex_, to make targets or their pipelines

@@ -4,9 +4,29 @@
 #include "gpu/vk/frame_needs.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fw::gpu::vk {
 namespace {
+
+// More rings of a frame in which an object comes into view or catches fire, which would end in
+// steps of whole texels: the next ones add to them. A picture by itself has no next frame, and
+// takes what there is to see, up to so many.
+constexpr uint32_t kRingsOfFrame = 8, kRingsOfPicture = 96;
+// How long predictions may wait where detail is short: ticks, with no triangles left, and texels
+// that fire crosses meanwhile, as a round brings a ring. Known predictions stay, and age.
+constexpr double kLongestPause = kTicksPerSecond / 10.0, kCrossedInPause = 0.6;
+
+// Texels that fire may cross in a tick.
+double paceOf(const ObjectEntry& object) noexcept {
+    return metresPerTick(object) / std::sqrt(std::max(double(object.record.tint.w), 1e-12));
+}
+
+// Texels that fire may cross in the time that is looked ahead.
+uint32_t ringsOf(const ObjectEntry& object) noexcept {
+    const double rings = double(object.record.horizon) * paceOf(object);
+    return uint32_t(std::clamp(rings, 1.0, double(kRingsOfPicture)));
+}
 
 // New records of a step's latches.
 void recordMaterials(BackendState& s, std::span<const MaterialUpdate> updates,
@@ -99,20 +119,14 @@ void markObjectOfEvent(BackendState& s, const TexelEvent& event, uint32_t now) {
 StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planned,
                   const FrameNeeds& needs, bool first, bool iterate, FrameRecorder& recorder) {
     StepRecord step;
-    step.now = planned.now;
-    step.stepShift = planned.substepShift;
+    static_cast<StepPlan&>(step) = planned;
     step.switches = plan.switches;
     step.objectSlots = uint32_t(s.scene.objects.size());
     step.iterate = iterate;
     step.reduce = planned.reduce && needs.burning;
     step.heat = planned.heat && needs.heating;
-    step.rooms = planned.rooms;
     s.scene.airs = s.scene.airs || planned.rooms;
     step.exchange = step.reduce && planned.exchange;
-    step.governed = planned.governed;
-    step.capped = planned.capped;
-    step.plays = planned.plays;
-    step.rules = planned.rules;
     if (planned.remote) recordExchangeUpdate(s, *planned.remote, recorder);
     step.links = s.simulation.links;
     step.parts = s.scene.partMeshes != 0;
@@ -122,8 +136,7 @@ StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planne
     recordMaterials(s, planned.materials, recorder);
     step.wakeGroups = stageWakeGroups(s, planned.materials, needs.dense,
                                       needs.rebuildsPrediction && first, recorder);
-    step.events = recorder.stage(planned.events);
-    step.eventList = planned.events;
+    step.staged = recorder.stage(planned.events);
     for (const TexelEvent& event : planned.events) {
         markObjectOfEvent(s, event, planned.now);
         if (addressesAll(event))
@@ -173,6 +186,60 @@ void recordForgetting(BackendState& s, FrameRecorder& recorder) {
                              uint64_t(object.texelCount()) * 4);
         object.burn.lastDouse = 0;
     }
+}
+
+bool predictsNow(const BackendState& s, const FrameNeeds& needs, uint32_t endTick) noexcept {
+    const double shortOf = 1.0 - double(s.detail.triangles);
+    if (shortOf <= 0 || needs.stimulus || needs.appears) return true;
+    double pause = kLongestPause * shortOf;
+    for (const uint32_t i : s.scene.awake)
+        if (const ObjectEntry& object = s.scene.objects[i];
+            object.live && object.burn.touched && (object.record.flags & kObjectUnseen) == 0)
+            pause = std::min(pause, kCrossedInPause / std::max(paceOf(object), 1e-9));
+    return double(endTick - s.simulation.predictTick) >=
+           pause;  // of a save that was loaded: long ago
+}
+
+void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& recorder) {
+    const auto uploadFlags = [&](uint32_t slot, uint32_t flags) {
+        recorder.uploadOne(FW_BIND_OBJECTS,
+                           uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
+                           flags);
+    };
+    s.simulation.predictTick = plan.endTick;
+    const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
+    uint32_t rings = 0;
+    // Objects that others lit are known only later.
+    bool seen = shownLately(s.simulation.seenFrame, s.open.ringFrame);
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
+        uint32_t& flags = object.record.flags;
+        if (object.turns) {
+            flags ^= kObjectUnseen;
+            const bool comes = (flags & kObjectUnseen) == 0;
+            uploadFlags(i, comes ? flags | kObjectShownAgain : flags);
+            if (comes) {
+                recordPredictRestart(recorder, s.simulation.lists, i, object.record.tileCount);
+                rings = std::max(rings, std::min(ringsOf(object), most));
+            }
+        }
+        if (object.burn.catches && (flags & kObjectUnseen) == 0)
+            rings = std::max(rings, std::min(ringsOf(object), kRingsOfFrame));
+        object.burn.catches = false;
+        seen |= object.live && object.burn.touched && (flags & kObjectUnseen) == 0;
+    }
+    // A ring a round: long frames need more to stay ahead of a fast front.
+    auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
+    recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
+    if (rings > 0) {
+        rounds += rings;
+        for (const uint32_t i : s.scene.awake)
+            if (s.scene.objects[i].turns && (s.scene.objects[i].record.flags & kObjectUnseen) == 0)
+                uploadFlags(i, s.scene.objects[i].record.flags);
+    }
+    for (uint32_t i = 1; seen && i < rounds; ++i)
+        recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
+    s.simulation.predictWalks += seen ? rounds : 1;
 }
 
 // Burnt pieces that lost their hold: a part of the tiles each frame, round-robin, from the first

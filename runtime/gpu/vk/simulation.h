@@ -37,6 +37,11 @@ struct SimulationState {
 
 void recordSteps(BackendState& s, const FramePlan& plan, const FrameNeeds& needs,
                  FrameRecorder& recorder);
+// Whether a frame's predictions are due: with all detail, always.
+[[nodiscard]] bool predictsNow(const BackendState& s, const FrameNeeds& needs,
+                               uint32_t endTick) noexcept;
+// Arrival ahead of the front, of the objects that some view shows.
+void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& recorder);
 // Burnt pieces that lost their hold.
 void recordFalling(BackendState& s, const FramePlan& plan, bool burning, FrameRecorder& recorder);
 // Once a dousing is over, its object's predictions begin again with its state.
@@ -47,10 +52,7 @@ void recordForgetting(BackendState& s, FrameRecorder& recorder);
 void markVisible(BackendState& s, const FwView& view, float height, uint64_t frame) noexcept;
 // Which objects come into view or leave it with the frame: marks those, and what they need.
 void addSeenNeeds(BackendState& s, FrameNeeds& needs);
-// Whether a frame's predictions are due: with all detail, always.
-[[nodiscard]] bool predictsNow(const BackendState& s, const FrameNeeds& needs,
-                               uint32_t endTick) noexcept;
-// Arrival ahead of the front, of the objects that some view shows.
-void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& recorder);
+// Whether what a view showed in ring frame `seenFrame` is still predicted in `frame`.
+[[nodiscard]] bool shownLately(uint64_t seenFrame, uint64_t frame) noexcept;
 
 }  // namespace fw::gpu::vk

@@ -97,11 +97,11 @@ PendingReadback pendingOf(const OpenFrame& open) noexcept {
 
 // --- BackendState ---
 
-BackendState::BackendState(Context::State& contextState, const WorldLimits& worldLimits,
+BackendState::BackendState(Context& shared, const WorldLimits& worldLimits,
                            std::pmr::memory_resource* pmr, const core::Log& logTo)
-    : context(contextState),
-      device(contextState.device),
-      deviceMemory(contextState.deviceMemory),
+    : context(shared),
+      device(shared.device),
+      deviceMemory(shared.deviceMemory),
       limits(worldLimits),
       memory(pmr),
       log(logTo),
@@ -111,7 +111,7 @@ BackendState::BackendState(Context::State& contextState, const WorldLimits& worl
               {std::max(worldLimits.maxLights, kSurfaceLights),
                std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
               pmr),
-      sets(device, contextState.pipelines, retired, pmr),
+      sets(device, shared.pipelines, retired, pmr),
       scene(deviceMemory, retired, pmr),
       simulation(pmr),
       deforming(pmr),
@@ -215,12 +215,9 @@ ViewParams BackendState::paramsOf(const FwView& view, float height,
 
 VkBackend::VkBackend(Context& context, const WorldLimits& limits, std::pmr::memory_resource* memory,
                      const core::Log& log)
-    : memory_(memory) {
-    state_ = std::pmr::polymorphic_allocator<>(memory).new_object<BackendState>(
-        context.state(), limits, memory, log);
-}
+    : state_(core::Owned<BackendState>::make(memory, context, limits, memory, log)) {}
 
-VkBackend::~VkBackend() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
+VkBackend::~VkBackend() = default;
 
 bool VkBackend::beginOutside(const FwVulkanFrame& frame, std::span<const FwView> views) {
     BackendState& s = *state_;

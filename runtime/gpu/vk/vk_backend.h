@@ -2,54 +2,58 @@
 // the host's command buffers, or submits by itself on a device of its own. Parts: table, device,
 // memory, frame_ring, barriers, descriptors, pipelines, timers.
 #pragma once
-#include "core/log.h"
-#include "flamewright/flamewright_vulkan.h"
+#include "core/owned.h"
 #include "gpu/backend.h"
 #include "gpu/passes/draw.h"
+#include "gpu/vk/memory.h"
+#include "gpu/vk/pipelines.h"
 
 namespace fw::gpu::vk {
 
 struct BackendState;
 
-// One per FwContext. Errors are core::Error or std::bad_alloc, and leave things unchanged.
+// A host's device and the parts that its worlds share. One per FwContext. Errors are core::Error or
+// std::bad_alloc, and leave things unchanged.
 class Context {
  public:
     // `host` null: own instance and device, through libvulkan.so.1. `host` is copied; its device,
     // pipeline cache and allocation callbacks must outlive the context. `log` and `memory`, too.
     // gpuMemoryBudget: bytes, 0: none.
     Context(const FwVulkanHost* host, uint64_t gpuMemoryBudget, std::pmr::memory_resource* memory,
-            const core::Log& log);
-    ~Context();  // after its backends. Never waits; a host has waited before.
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
+            const core::Log& log)
+        : device(host, log),
+          deviceMemory(device, gpuMemoryBudget, memory),
+          pipelines(device, memory) {}
 
-    void prepare();                                           // [any] builds the missing pipelines
-    [[nodiscard]] bool ready() const noexcept;                // [any]
-    FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
-    void unregisterTarget(FwTargetId id);                     // [any] the host has waited
-    void notifyDeviceLost() noexcept;                         // [any]
-    [[nodiscard]] bool deviceLost() const noexcept;           // [any]
+    void prepare() { pipelines.prepare(); }                                  // [any]
+    [[nodiscard]] bool ready() const noexcept { return pipelines.ready(); }  // [any]
+    FwTargetId registerTarget(const FwVulkanTargetDef& def) {                // [any]
+        return pipelines.registerTarget(def);
+    }
+    void unregisterTarget(FwTargetId id) {
+        pipelines.unregisterTarget(id);
+    }                                                          // [any] the host has waited
+    void notifyDeviceLost() noexcept { device.notifyLost(); }  // [any]
+    [[nodiscard]] bool deviceLost() const noexcept { return device.lost(); }  // [any]
 
     // By component, of all worlds together, and "blocks". [any]
-    void memoryRows(std::pmr::vector<MemoryRow>& out) const;
+    void memoryRows(std::pmr::vector<MemoryRow>& out) const { deviceMemory.rows(out); }
     // FW_OUTPUT_AUTO: the format does not say. [any]
     [[nodiscard]] static FwOutputEncoding encodingOf(VkFormat color) noexcept;
     // As fwTarget_IsReady. Throws FW_ERROR_STALE_ID. [any]
-    bool targetReady(FwTargetId id, FwPipelineProgress& progress);
-    [[nodiscard]] bool isTarget(FwTargetId id) noexcept;  // [any]
+    bool targetReady(FwTargetId id, FwPipelineProgress& progress) {
+        return pipelines.targetReady(id, progress);
+    }
 
     // All of FwContextInfo but backend and cpuMemoryUsed. [any]
     void fillInfo(FwContextInfo& info) const noexcept;
-    [[nodiscard]] bool ownDevice() const noexcept;
+    [[nodiscard]] bool ownDevice() const noexcept { return device.own; }
     // Extensions and features that a host may enable for us; structSize stays. [any]
     static void requirements(FwVulkanRequirements& requirements) noexcept;
 
-    struct State;
-    [[nodiscard]] State& state() noexcept { return *state_; }
-
- private:
-    State* state_ = nullptr;
-    std::pmr::memory_resource* memory_ = nullptr;
+    Device device;  // before its users: destroyed after them
+    DeviceMemory deviceMemory;
+    Pipelines pipelines;
 };
 
 struct WorldLimits {
@@ -149,8 +153,7 @@ class VkBackend final : public Backend {
     void moveWorld(const double (&by)[3]) noexcept override;
 
  private:
-    BackendState* state_ = nullptr;
-    std::pmr::memory_resource* memory_ = nullptr;
+    core::Owned<BackendState> state_;
 };
 
 }  // namespace fw::gpu::vk

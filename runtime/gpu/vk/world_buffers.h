@@ -89,11 +89,10 @@ struct BufferRow {
     uint32_t binding = 0;
     const char* name = "";
     BufferPool pool = kPoolFixed;
-    uint32_t stride = 0;           // bytes of a unit of the pool
-    uint32_t initialCapacity = 0;  // units
-    bool keepsContent = false;     // when it grows
+    uint32_t stride = 0;  // bytes of a unit of the pool
     Component component = kComponentObjects;
     VkBufferUsageFlags extraUsage = 0;  // beyond storage and transfer
+    bool keepsContent = true;           // when it grows
 };
 
 struct WorldSizes {       // of the fixed buffers
