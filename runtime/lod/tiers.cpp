@@ -15,23 +15,19 @@ bool marches(uint32_t tier) noexcept {
 
 // The one that it has, or a place for a new one.
 uint32_t placeOf(uint32_t key, TierLives& lives) noexcept {
-    uint32_t at = lifeOf(key, lives);
-    if (at < kMaxVolumeFlames) return at;
-    at = 0;
-    while (at < kMaxVolumeFlames && lives[at].used) ++at;
-    if (at == kMaxVolumeFlames) return at;
-    lives[at] = {};
-    lives[at].key = key;
-    return at;
+    const uint32_t had = lifeOf(key, lives);
+    if (had < kMaxVolumeFlames) return had;
+    const auto at = std::ranges::find(lives, false, &TierLife::used);
+    if (at != lives.end()) *at = {.key = key};
+    return uint32_t(at - lives.begin());
 }
 
 }  // namespace
 
 uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept {
-    uint32_t at = 0;
-    while (at < kMaxVolumeFlames && !(lives[at].used && !lives[at].seen && lives[at].key == key))
-        ++at;
-    return at;
+    const auto at = std::ranges::find_if(
+        lives, [key](const TierLife& life) { return life.used && !life.seen && life.key == key; });
+    return uint32_t(at - lives.begin());
 }
 
 bool wantsAtlas(uint32_t requested, float wide, const TierLife& life) noexcept {

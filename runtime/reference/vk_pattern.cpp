@@ -67,8 +67,7 @@ void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
     const uint32_t nothing = gpu::kPatternEmpty;
     while (staged.count % 64 != 0) recorder.append(staged, std::span<const uint32_t>(&nothing, 1));
     recorder.endStaged();
-    recorder.copyIn(staged.at, FW_BIND_EXTENSION_WORDS,
-                    uint64_t(object.extensionWords.first()) * 16, uint64_t(staged.count) * 4);
+    recorder.copyIn(staged, FW_BIND_EXTENSION_WORDS, uint64_t(object.extensionWords.first()) * 16);
     VkDrawIndexedIndirectCommand draws[gpu::kMaterialsPerObject]{};
     uint32_t first = object.refine.indices.first();
     for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
@@ -76,7 +75,7 @@ void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
         first += state.listed[m] * 3;
     }
     const Staged args = recorder.stage(std::span<const VkDrawIndexedIndirectCommand>(draws));
-    recorder.copyIn(args.at, FW_BIND_REFINE_DRAWS, uint64_t(slot) * sizeof draws, sizeof draws);
+    recorder.copyIn(args, FW_BIND_REFINE_DRAWS, uint64_t(slot) * sizeof draws);
 }
 
 }  // namespace
@@ -176,8 +175,7 @@ void recordPatterns(State& s, FrameInFlight& slot) {
         record.items = object.extensionWords.first() * 4;
         record.cornerCount = refined.slotCount;
         const Staged staged = recorder.stage(std::span<const gpu::RefineObject>(&record, 1));
-        recorder.copyIn(staged.at, FW_BIND_REFINE_OBJECTS, uint64_t(i) * sizeof record,
-                        sizeof record);
+        recorder.copyIn(staged, FW_BIND_REFINE_OBJECTS, uint64_t(i) * sizeof record);
         use.settings.pixelsPerEdge = object.refine.pixelsPerEdge;
         const PatternView from{{record.eye.x, record.eye.y, record.eye.z}, record.eye.w};
         if (advancePattern(*use.model, use.settings, now, from, s.refine.full, use.state))
@@ -200,7 +198,7 @@ void recordPatterns(State& s, FrameInFlight& slot) {
             if (!naming) places = groups.count;
         }
     recorder.endStaged();
-    recorder.copyIn(groups.at, FW_BIND_EXTENSION_GROUPS, 0, groups.count * sizeof(WakeGroup));
+    recorder.copyIn(groups, FW_BIND_EXTENSION_GROUPS);
     patternsOf(s).lastTick = now;
     // Vertices, then listed triangles.
     gpu::PatternPush push{0, s.simulation.shownTick, 0, gpu::kRefineRecede};

@@ -14,6 +14,7 @@
 #include <bit>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <numeric>
 
 namespace fw::gpu::cpu {
@@ -25,26 +26,21 @@ static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFF
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {"wake",      "events",  "rooms",       "heat",
-                                                  "schedule",  "arrival", "burn_budget", "commit",
-                                                  "extension", "reduce",  "exchange",    "field"};
-
 class Stopwatch {
  public:
-    Stopwatch(CpuBackend::State& state, Timer timer) noexcept
-        : state_(state), timer_(timer), start_(std::chrono::steady_clock::now()) {}
+    Stopwatch(CpuBackend::State& state, const char* pass) noexcept
+        : state_(state), pass_(pass), start_(std::chrono::steady_clock::now()) {}
     ~Stopwatch() {
-        const auto end = std::chrono::steady_clock::now();
-        state_.milliseconds[timer_] +=
-            std::chrono::duration<double, std::milli>(end - start_).count();
-        ++state_.timed[timer_];
+        const std::chrono::duration<double, std::milli> took =
+            std::chrono::steady_clock::now() - start_;
+        state_.addTime(pass_, took.count());
     }
     Stopwatch(const Stopwatch&) = delete;
     Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
     CpuBackend::State& state_;
-    Timer timer_;
+    const char* pass_;
     std::chrono::steady_clock::time_point start_;
 };
 
@@ -75,7 +71,7 @@ void CpuBackend::State::requestToBurn(uint32_t worldTile) noexcept {
 }
 
 void CpuBackend::State::allocateBurnBudget(uint32_t maxTiles, uint32_t now) noexcept {
-    Stopwatch watch(*this, kTimerBurnBudget);
+    Stopwatch watch(*this, "burn_budget");
     for (uvec4& request : requests) {
         requested[request.w] = 0;
         request.y = tiles[request.w].object;
@@ -302,13 +298,13 @@ void CpuBackend::State::shuffle(std::pmr::vector<uint32_t>& entries) noexcept {
 
 void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexcept {
     {
-        Stopwatch watch(*this, kTimerSchedule);
+        Stopwatch watch(*this, "schedule");
         schedule(step, iteration);
     }
     if (runList.empty()) return;
     runTiles += runList.size();
     {
-        Stopwatch watch(*this, kTimerArrival);
+        Stopwatch watch(*this, "arrival");
         FW_ASSERT(runList.size() <= results.size() && runList.size() * 64 <= scratch.size(),
                   "%zu tiles run, %zu results", runList.size(), results.size());
         uint32_t known = kNoneTexel;  // object of `arrays`
@@ -336,7 +332,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             if (results[i].lit != 0 && !mayBurn(runList[i])) requestToBurn(runList[i]);
         allocateBurnBudget(step.rules.maxTiles, step.now);
     }
-    Stopwatch watch(*this, kTimerCommit);
+    Stopwatch watch(*this, "commit");
     for (size_t i = 0; i < runList.size(); ++i) {
         const uint32_t worldTile = runList[i];
         const FrontTile& result = results[i];
@@ -545,35 +541,35 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     capped = step.capped;
     const uint32_t most = step.rules.maxTiles;
     if (!step.materials.empty()) {
-        Stopwatch watch(*this, kTimerWake);
+        Stopwatch watch(*this, "wake");
         wake(step);
     }
     if (!step.events.empty()) {
-        Stopwatch watch(*this, kTimerEvents);
+        Stopwatch watch(*this, "events");
         requestThenBurn(most, step.now, [&] { applyEvents(step); });
     }
     if (step.rooms) {
-        Stopwatch watch(*this, kTimerRooms);
+        Stopwatch watch(*this, "rooms");
         airRooms(step.now);
     }
     if (step.heat) goneHot = 0;
     if (step.heat && !hotList.empty()) {
-        Stopwatch watch(*this, kTimerHeat);
+        Stopwatch watch(*this, "heat");
         requestThenBurn(most, step.now, [&] { heatStep(step.now); });
     }
     goneListed = 0;
     if (!list.empty() || (switches & kSwitchDense) != 0)
         for (uint32_t k = 0; k < 1u << step.substepShift; ++k) iterate(step, k);
     if (extendedObjects != 0) {
-        Stopwatch watch(*this, kTimerExtension);
+        Stopwatch watch(*this, "extension");
         requestThenBurn(most, step.now, [&] { extension()->cpu->step(*this, step.now); });
     }
     if (step.reduce) {
-        Stopwatch watch(*this, kTimerReduce);
+        Stopwatch watch(*this, "reduce");
         reduce(step.now + kStepTicks);
     }
     if (step.exchange) {
-        Stopwatch watch(*this, kTimerExchange);
+        Stopwatch watch(*this, "exchange");
         exchange(step.rules, step.now + kStepTicks);
     }
 }
@@ -625,16 +621,16 @@ void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& sto
     FW_ASSERT(waiting <= readbacks.size(), "%zu of %zu readbacks wait", waiting, readbacks.size());
 }
 
-void CpuBackend::State::listTimes(uint64_t frameIndex) noexcept {
-    timesCount = 0;
-    for (uint32_t t = 0; t < kTimerCount; ++t) {
-        if (timed[t] == 0) continue;
-        PassTime& time = times[timesCount++];
-        std::snprintf(time.name, sizeof time.name, "%s", kTimerNames[t]);
-        time.milliseconds = milliseconds[t];
-        time.frameIndex = frameIndex;
-        time.count = timed[t];
+void CpuBackend::State::addTime(const char* pass, double milliseconds) noexcept {
+    uint32_t at = 0;
+    while (at < timesCount && std::strcmp(times[at].name, pass) != 0) ++at;
+    FW_ASSERT(at < times.size(), "%s is timed beside %u passes", pass, timesCount);
+    if (at == timesCount) {
+        times[timesCount++] = {};
+        std::snprintf(times[at].name, sizeof times[at].name, "%s", pass);
     }
+    times[at].milliseconds += milliseconds;
+    ++times[at].count;
 }
 
 void CpuBackend::run(const FramePlan& plan) {
@@ -649,15 +645,14 @@ void CpuBackend::run(const FramePlan& plan) {
     s.showRestored();
     s.switches = plan.switches;
     s.runTiles = 0;
-    s.milliseconds.fill(0);
-    s.timed.fill(0);
+    s.timesCount = 0;
     for (const StepPlan& step : plan.steps) s.runStep(step);
     if (plan.fields && !plan.fields->runs.empty()) {
-        Stopwatch watch(s, kTimerField);
+        Stopwatch watch(s, "field");
         s.stepFields(*plan.fields);
     }
     s.finishReadback(plan, store);
-    s.listTimes(plan.frameIndex);
+    for (PassTime& time : s.times) time.frameIndex = plan.frameIndex;
 }
 
 const Readback* CpuBackend::nextReadback() {

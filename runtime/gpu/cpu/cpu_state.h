@@ -111,22 +111,6 @@ struct ReadbackStore {
     std::pmr::vector<RoomAir> rooms{memory};
 };
 
-enum Timer : uint32_t {
-    kTimerWake,
-    kTimerEvents,
-    kTimerRooms,
-    kTimerHeat,
-    kTimerSchedule,
-    kTimerArrival,
-    kTimerBurnBudget,
-    kTimerCommit,
-    kTimerExtension,
-    kTimerReduce,
-    kTimerExchange,
-    kTimerField,
-    kTimerCount
-};
-
 // Figures of memoryRows, which any thread calls.
 struct CpuCounts {
     std::atomic<uint64_t> texels{0}, objects{0}, exchange{0}, readbacks{0};  // bytes
@@ -183,7 +167,7 @@ struct CpuBackend::State {
     void runStep(const StepPlan& step) noexcept;
     void answerProbes(std::span<const Probe> probes, std::span<ProbeAnswer> answers) const noexcept;
     void finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept;
-    void listTimes(uint64_t frameIndex) noexcept;
+    void addTime(const char* pass, double milliseconds) noexcept;
     // For memoryRows, which any thread may call.
     void countObject(const CpuObject& object, bool comes) noexcept;
     void countLists() noexcept;
@@ -296,9 +280,7 @@ struct CpuBackend::State {
     uint32_t reducedBurning = 0;  // as of the last reduce
     // Tiles of destroyed objects: they count until their list is walked again, as on a device.
     uint32_t goneBurning = 0, goneListed = 0, goneHot = 0;
-    std::array<double, kTimerCount> milliseconds{};
-    std::array<uint32_t, kTimerCount> timed{};
-    std::array<PassTime, kTimerCount> times{};
+    std::array<PassTime, 12> times{};  // of the last frame, by name
     uint32_t timesCount = 0;
 };
 

@@ -36,32 +36,32 @@ struct BackendState {
     BackendState& operator=(const BackendState&) = delete;
 
     Context& context;
-    Device& device;
-    DeviceMemory& deviceMemory;
+    Device& device = context.device;
+    DeviceMemory& deviceMemory = context.deviceMemory;
     WorldLimits limits;
     std::pmr::memory_resource* memory;
     const core::Log& log;
 
-    RetireQueue retired;
-    FrameRing ring;
+    RetireQueue retired{device, deviceMemory, memory};
+    FrameRing ring{device};
     WorldBuffers buffers;
-    PassSets sets;
+    PassSets sets{device, context.pipelines, retired, memory};
     BarrierTracker barriers;
     Buffer views;             // view ring: frame in flight, then view
     uint32_t viewStride = 0;  // bytes
 
-    SceneTables scene;
-    SimulationState simulation;
-    DeformRenderer deforming;
-    FlameRenderer flames;
-    ParticleRenderer particles;
-    FieldRenderer particleFields;
-    SurfaceRenderer surfaces;
-    RefineRenderer refine;
+    SceneTables scene{deviceMemory, retired, memory};
+    SimulationState simulation{memory};
+    DeformRenderer deforming{memory};
+    FlameRenderer flames{memory};
+    ParticleRenderer particles{float(limits.maxLights)};
+    FieldRenderer particleFields{memory};
+    SurfaceRenderer surfaces{memory};
+    RefineRenderer refine{memory};
     std::shared_ptr<void> extended;  // of an extension, from its first use on
     DrawTargets targets;
-    OutsideViews outsideViews;
-    ReadbackResults results;
+    OutsideViews outsideViews{memory};
+    ReadbackResults results{memory};
     Detail detail;          // as of the frame's plan
     uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoDepthFirst
     ViewParams seen{};      // of the last pushView

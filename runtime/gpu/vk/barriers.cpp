@@ -61,12 +61,14 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
                          uint32_t view) {
     VkPipelineStageFlags srcStages = 0, dstStages = 0;
     VkAccessFlags srcAccess = 0, dstAccess = 0;
+    const auto sees = [](const State& state, const Scope& scope) {
+        return (state.visibleStages & scope.stages) == scope.stages &&
+               (state.visibleAccess & scope.access) == scope.access;
+    };
     for (const Use& one : uses) {
         const Scope scope = scopeOf(one);
         const State& state = states_[resourceOf(one.resource, view)];
-        const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
-                          (state.visibleAccess & scope.access) == scope.access;
-        if (state.writeStages && (scope.write || !seen)) {
+        if (state.writeStages && (scope.write || !sees(state, scope))) {
             srcStages |= state.writeStages;
             srcAccess |= state.writeAccess;
         }
@@ -83,9 +85,7 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
         } else {
             state.readStages |= scope.stages;
             // A write that was not visible is among this barrier's sources.
-            const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
-                              (state.visibleAccess & scope.access) == scope.access;
-            if (state.writeStages && !seen) {
+            if (state.writeStages && !sees(state, scope)) {
                 state.visibleStages |= dstStages;
                 state.visibleAccess |= dstAccess;
             }

@@ -108,7 +108,7 @@ void recordRestore(FrameRecorder& r, const FrameLists& lists, uint32_t object, u
 
 void recordFields(FrameRecorder& r, const FieldsRecord& fields) {
     if (fields.runs.count == 0) return;
-    r.copyIn(fields.runs.at, FW_BIND_FIELD_RUNS, 0, uint64_t(fields.runs.count) * sizeof(FieldRun));
+    r.copyIn(fields.runs, FW_BIND_FIELD_RUNS);
     FieldPush push{};
     if (fields.masked) r.dispatch(pass::field_mask, push, fields.masked);
     push.first = fields.masked;
@@ -126,8 +126,9 @@ void recordSkin(FrameRecorder& r, const SkinPush& push) {
 
 void recordCounters(FrameRecorder& r, FrameLists& lists, uint32_t iterations) {
     if (lists.row != kRowIteration)
-        r.copyWithin(FW_BIND_COUNTERS, lists.row * kRowBytes + kListPart,
-                     kRowIteration * kRowBytes + kListPart, kRowBytes - kListPart);
+        r.copyBetween({FW_BIND_COUNTERS, lists.row * kRowBytes + kListPart},
+                      {FW_BIND_COUNTERS, kRowIteration * kRowBytes + kListPart},
+                      kRowBytes - kListPart);
     r.fillZero(FW_BIND_COUNTERS, kRowIteration * kRowBytes, kListPart);
     if (iterations)
         r.fillZero(FW_BIND_COUNTERS, (kRowIteration + 1) * kRowBytes, iterations * kRowBytes);
@@ -143,13 +144,12 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
         recordLighting(step.capped, push.switches, allotBudget, light);
     };
     if (step.wakeGroups.count) {
-        r.copyIn(step.wakeGroups.at, FW_BIND_WAKE_GROUPS, 0, uint64_t(step.wakeGroups.count) * 8);
+        r.copyIn(step.wakeGroups, FW_BIND_WAKE_GROUPS);
         push.count = step.wakeGroups.count;
         if (!dense) r.dispatch(pass::wake, push, push.count);
     }
     if (step.staged.count) {
-        r.copyIn(step.staged.at, FW_BIND_EVENTS, 0,
-                 uint64_t(step.staged.count) * sizeof(TexelEvent));
+        r.copyIn(step.staged, FW_BIND_EVENTS);
         push.count = step.staged.count;
         lighting([&] {
             r.dispatchItems(pass::events, push, push.count);
@@ -300,7 +300,7 @@ void recordSupport(FrameRecorder& r, uint32_t endTick, const TileShare& share) {
 void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
     if (deform.groups.count == 0) return;
     beginPart(r, FramePart::deformation);
-    r.copyIn(deform.groups.at, FW_BIND_DEFORM_GROUPS, 0, uint64_t(deform.groups.count) * 8);
+    r.copyIn(deform.groups, FW_BIND_DEFORM_GROUPS);
     const auto dispatch = [&](ComputePassOf<DeformPush> pass, uint32_t first, uint32_t groups,
                               uint32_t parity) {
         DeformPush push = deform.push;
@@ -332,7 +332,7 @@ void recordProbes(FrameRecorder& r, const Staged& probes) {
     if (probes.count == 0) return;
     StepPush push{};
     push.count = probes.count;
-    r.copyIn(probes.at, FW_BIND_PROBES, 0, uint64_t(probes.count) * 8);
+    r.copyIn(probes, FW_BIND_PROBES);
     r.dispatchItems(pass::probe, push, probes.count);
 }
 

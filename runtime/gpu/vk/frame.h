@@ -17,6 +17,11 @@ struct FrameLists {
     uint32_t hotParity = 0;
 };
 
+// How often frames walked through each list.
+struct ListWalks {
+    uint64_t front = 0, burn = 0, predict = 0, hot = 0;
+};
+
 struct DeformGroups {  // of kDeformGroup particles or vertices
     uint32_t nodes = 0, sheets = 0, extended = 0, vertices = 0;
     uint32_t inner = 0;  // of vertices with an inner skin

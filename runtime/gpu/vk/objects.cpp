@@ -239,10 +239,10 @@ void SceneTables::noteFire(uint32_t slot, uint32_t tick) noexcept {
 
 void SceneTables::freeQuarantine(const SimulationState& now) noexcept {
     std::erase_if(quarantine, [&](const Quarantined& one) {
-        return (now.frontWalks > one.frontWalks || now.frontEmpty) &&
-               (now.burnWalks > one.burnWalks || now.burnEmpty) &&
-               (now.predictWalks > one.predictWalks || now.predictEmpty) &&
-               (now.hotWalks > one.hotWalks || now.hotEmpty);
+        return (now.walks.front > one.walks.front || now.frontEmpty) &&
+               (now.walks.burn > one.walks.burn || now.burnEmpty) &&
+               (now.walks.predict > one.walks.predict || now.predictEmpty) &&
+               (now.walks.hot > one.walks.hot || now.hotEmpty);
     });
 }
 
@@ -324,9 +324,7 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
     if (!entry.live) return;
     if (!entry.resetDue) {  // a recorded frame met it, so lists may name its tiles
         FW_ASSERT(s.scene.quarantine.size() < s.scene.quarantine.capacity());
-        s.scene.quarantine.push_back({std::move(entry.tiles), s.simulation.frontWalks,
-                                      s.simulation.burnWalks, s.simulation.predictWalks,
-                                      s.simulation.hotWalks});
+        s.scene.quarantine.push_back({std::move(entry.tiles), s.simulation.walks});
     }
     if (entry.refine.extendedPlus1) {
         extension()->vulkan->destroyObject(s, entry);

@@ -17,32 +17,24 @@ struct PendingReadback {  // in the order of frames
 };
 
 struct ReadbackResults {
-    explicit ReadbackResults(std::pmr::memory_resource* pmr)
-        : givenObjects(pmr),
-          givenAnswers(pmr),
-          givenMaps(pmr),
-          givenLights(pmr),
-          givenFields(pmr),
-          givenRooms(pmr),
-          times(pmr),
-          imageLayout(pmr),
-          givenImages(pmr) {}
+    explicit ReadbackResults(std::pmr::memory_resource* pmr) : memory(pmr) {}
     void push(const PendingReadback& one) noexcept;
 
+    std::pmr::memory_resource* memory;
     std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
     uint32_t pendingFirst = 0, pendingCount = 0;
     Readback given;
-    std::pmr::vector<ObjectCounters> givenObjects;
-    std::pmr::vector<ProbeAnswer> givenAnswers;
-    std::pmr::vector<ObjectImage> givenMaps;
-    std::pmr::vector<BurnLight> givenLights;
-    std::pmr::vector<FieldCounters> givenFields;
-    std::pmr::vector<RoomAir> givenRooms;  // empty: no step had any yet
-    std::pmr::vector<PassTime> times;
+    std::pmr::vector<ObjectCounters> givenObjects{memory};
+    std::pmr::vector<ProbeAnswer> givenAnswers{memory};
+    std::pmr::vector<ObjectImage> givenMaps{memory};
+    std::pmr::vector<BurnLight> givenLights{memory};
+    std::pmr::vector<FieldCounters> givenFields{memory};
+    std::pmr::vector<RoomAir> givenRooms{memory};  // empty: no step had any yet
+    std::pmr::vector<PassTime> times{memory};
     float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
-    std::pmr::vector<ObjectAt> imageLayout;  // of the last frame that took images
-    uint64_t imagesFrame = 0;                // ring frame, of that
-    std::pmr::vector<ObjectImage> givenImages;
+    std::pmr::vector<ObjectAt> imageLayout{memory};  // of the last frame that took images
+    uint64_t imagesFrame = 0;                        // ring frame, of that
+    std::pmr::vector<ObjectImage> givenImages{memory};
 };
 
 // Where the pieces of the frame's readback will lie; `bytes`: all of it. May throw.

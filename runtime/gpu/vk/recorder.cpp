@@ -90,19 +90,14 @@ void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
     end();
 }
 
-void FrameRecorder::copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes) {
+void FrameRecorder::copyIn(const Staged& staged, uint32_t resource, uint64_t at) {
     const Use uses[] = {{resource, Access::copyWrite}};
-    copy(uses, t_.slot->upload.handle, buffer(resource), {uploadAt, at, bytes});
+    copy(uses, t_.slot->upload.handle, buffer(resource), {staged.at, at, staged.bytes});
 }
 
-void FrameRecorder::copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes) {
-    const Use uses[] = {{resource, Access::copyRead}, {resource, Access::copyWrite}};
-    copy(uses, buffer(resource), buffer(resource), {from, at, bytes});
-}
-
-void FrameRecorder::copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes) {
-    const Use uses[] = {{from, Access::copyRead}, {to, Access::copyWrite}};
-    copy(uses, buffer(from), buffer(to), {at, at, bytes});
+void FrameRecorder::copyBetween(const Place& from, const Place& to, uint64_t bytes) {
+    const Use uses[] = {{from.resource, Access::copyRead}, {to.resource, Access::copyWrite}};
+    copy(uses, buffer(from.resource), buffer(to.resource), {from.at, to.at, bytes});
 }
 
 void FrameRecorder::copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes) {

@@ -41,7 +41,7 @@ enum class RowPart : uint64_t {
 };
 
 struct Staged {  // in the frame's upload buffer
-    uint64_t at = 0;
+    uint64_t at = 0, bytes = 0;
     uint32_t count = 0;
 };
 
@@ -80,7 +80,7 @@ class FrameRecorder {
 
     // Linear writes into the frame's upload buffer. Piece by piece: beginStaged, append any number
     // of times, endStaged.
-    [[nodiscard]] Staged beginStaged() const noexcept { return {t_.slot->uploadUsed, 0}; }
+    [[nodiscard]] Staged beginStaged() const noexcept { return {t_.slot->uploadUsed}; }
     template <class T>
     void append(Staged& staged, std::span<const T> data) noexcept {
         FW_ASSERT(t_.slot->uploadUsed + data.size_bytes() <= t_.slot->upload.size,
@@ -90,6 +90,7 @@ class FrameRecorder {
             std::memcpy(t_.slot->upload.mapped + t_.slot->uploadUsed, data.data(),
                         data.size_bytes());
         t_.slot->uploadUsed += data.size_bytes();
+        staged.bytes += data.size_bytes();
         staged.count += uint32_t(data.size());
     }
     template <class T>
@@ -105,19 +106,21 @@ class FrameRecorder {
         return staged;
     }
 
-    void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
+    void copyIn(const Staged& staged, uint32_t resource, uint64_t at = 0);
     // Staged elements to byte `at` of a resource.
     template <class T>
     void upload(uint32_t resource, uint64_t at, std::span<const T> data) {
-        if (!data.empty()) copyIn(stage(data).at, resource, at, data.size_bytes());
+        if (!data.empty()) copyIn(stage(data), resource, at);
     }
     template <class T>
     void uploadOne(uint32_t resource, uint64_t at, const T& one) {
         upload(resource, at, std::span<const T>(&one, 1));
     }
-    void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);
-    // The same range of another resource.
-    void copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes);
+    struct Place {  // byte `at` of a resource
+        uint32_t resource = 0;
+        uint64_t at = 0;
+    };
+    void copyBetween(const Place& from, const Place& to, uint64_t bytes);
     void copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes);
     void fillZero(uint32_t resource, uint64_t at, uint64_t bytes);
 

@@ -317,8 +317,7 @@ void RefineRenderer::record(BackendState& s, FrameInFlight& slot) {
         recorder.appendOne(records, record);
     }
     recorder.endStaged();
-    recorder.copyIn(records.at, FW_BIND_REFINE_OBJECTS, 0,
-                    uint64_t(push.objectEnd) * sizeof(RefineObject));
+    recorder.copyIn(records, FW_BIND_REFINE_OBJECTS);
     frame.push = push;
     recordRefinement(recorder, s.simulation.lists, frame);
 }

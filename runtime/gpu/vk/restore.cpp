@@ -125,8 +125,8 @@ void recordRestores(BackendState& s, FrameRecorder& recorder) {
     s.scene.restoreDue = false;
     // The lists start empty, so nobody waits for a walk through them.
     recorder.fillZero(FW_BIND_COUNTERS, 0, VK_WHOLE_SIZE);
-    ++s.simulation.frontWalks, ++s.simulation.burnWalks;
-    ++s.simulation.predictWalks, ++s.simulation.hotWalks;
+    ++s.simulation.walks.front, ++s.simulation.walks.burn;
+    ++s.simulation.walks.predict, ++s.simulation.walks.hot;
     s.scene.restores.record(s.device, s.open.commands, s.barriers, s.buffers, s.open.ringFrame);
     for (const uint32_t slot : s.scene.restoredObjects) {
         const ObjectEntry& object = s.scene.objects[slot];
@@ -134,8 +134,8 @@ void recordRestores(BackendState& s, FrameRecorder& recorder) {
         const uint64_t texels = object.texelCount();
         recorder.fillZero(FW_BIND_SETTLED, uint64_t(object.record.stateBase) / 8 * 4,
                           texels / 8 * 4);
-        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
-                             texels * 4);
+        const uint64_t at = uint64_t(object.record.stateBase) * 4;
+        recorder.copyBetween({FW_BIND_STATE, at}, {FW_BIND_PREDICT, at}, texels * 4);
         recordRestore(recorder, s.simulation.lists, slot, object.record.tileCount);
     }
     s.scene.restoredObjects.clear();

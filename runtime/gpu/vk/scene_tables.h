@@ -80,19 +80,12 @@ struct ImageEntry {
 // Tiles of a destroyed object: list entries may still name them. Free once every list was walked.
 struct Quarantined {
     BufferRange tiles;
-    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;  // to be passed
+    ListWalks walks;  // to be passed
 };
 
 struct SceneTables {
     SceneTables(DeviceMemory& deviceMemory, RetireQueue& retired, std::pmr::memory_resource* pmr)
-        : meshes(pmr),
-          objects(pmr),
-          awake(pmr),
-          images(pmr),
-          uploads(deviceMemory, retired, pmr),
-          restores(deviceMemory, retired, pmr),
-          restoredObjects(pmr),
-          quarantine(pmr) {}
+        : memory(pmr), uploads(deviceMemory, retired, pmr), restores(deviceMemory, retired, pmr) {}
     // The object's record goes to the device with the next frame.
     void changed(uint32_t slot) noexcept;
     // The object burns at `tick`, as far as is known.
@@ -106,20 +99,21 @@ struct SceneTables {
         return meshes[object.mesh].refine[object.refine.key];
     }
 
-    std::pmr::vector<MeshEntry> meshes;
-    std::pmr::vector<ObjectEntry> objects;
+    std::pmr::memory_resource* memory;
+    std::pmr::vector<MeshEntry> meshes{memory};
+    std::pmr::vector<ObjectEntry> objects{memory};
     // Objects that frames look at. The others sleep: a change or an event inserts an object here,
     // and settle lets it go.
-    core::SlotSet awake;
-    std::pmr::vector<ImageEntry> images;
+    core::SlotSet awake{memory};
+    std::pmr::vector<ImageEntry> images{memory};
     ImageEntry white, lookTextures, profiles;
     ImageEntry flipbooks;  // not live: there are none
     UploadQueue uploads;
     // For the next frame: the content of restored objects, which replaces that of new ones.
     UploadQueue restores;
-    std::pmr::vector<uint32_t> restoredObjects;
+    std::pmr::vector<uint32_t> restoredObjects{memory};
     bool restoreDue = false;
-    std::pmr::vector<Quarantined> quarantine;
+    std::pmr::vector<Quarantined> quarantine{memory};
     uint32_t liveObjects = 0;
     uint32_t partMeshes = 0;    // of parts that touch
     bool initialized = false;   // the buffers that must start as zero do

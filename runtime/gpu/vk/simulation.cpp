@@ -164,9 +164,9 @@ void recordSteps(BackendState& s, const FramePlan& plan, const FrameNeeds& needs
         const bool first = &planned == plan.steps.data();
         const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder);
         recordSimulation(recorder, s.simulation.lists, step);
-        s.simulation.frontWalks += step.iterate ? 1 : 0;
-        s.simulation.burnWalks += step.reduce ? 1 : 0;
-        s.simulation.hotWalks += step.heat ? 1 : 0;
+        s.simulation.walks.front += step.iterate ? 1 : 0;
+        s.simulation.walks.burn += step.reduce ? 1 : 0;
+        s.simulation.walks.hot += step.heat ? 1 : 0;
     }
     FW_ASSERT(s.simulation.lists.row < s.buffers.capacity(kPoolIterations), "row %u",
               s.simulation.lists.row);
@@ -182,7 +182,8 @@ void recordForgetting(BackendState& s, FrameRecorder& recorder) {
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
         if (!object.burn.forget) continue;
-        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
+        const uint64_t at = uint64_t(object.record.stateBase) * 4;
+        recorder.copyBetween({FW_BIND_STATE, at}, {FW_BIND_PREDICT, at},
                              uint64_t(object.texelCount()) * 4);
         object.burn.lastDouse = 0;
     }
@@ -239,7 +240,7 @@ void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& re
     }
     for (uint32_t i = 1; seen && i < rounds; ++i)
         recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
-    s.simulation.predictWalks += seen ? rounds : 1;
+    s.simulation.walks.predict += seen ? rounds : 1;
 }
 
 // Burnt pieces that lost their hold: a part of the tiles each frame, round-robin, from the first

@@ -17,7 +17,7 @@ struct SimulationState {
     }
 
     FrameLists lists;
-    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
+    ListWalks walks;
     uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
     uint64_t seenFrame = 0;     // ring frame whose view last showed some object
     // Known from a readback. While a tile is hot, its front may move again.

@@ -100,28 +100,13 @@ PendingReadback pendingOf(const OpenFrame& open) noexcept {
 BackendState::BackendState(Context& shared, const WorldLimits& worldLimits,
                            std::pmr::memory_resource* pmr, const core::Log& logTo)
     : context(shared),
-      device(shared.device),
-      deviceMemory(shared.deviceMemory),
       limits(worldLimits),
       memory(pmr),
       log(logTo),
-      retired(device, deviceMemory, pmr),
-      ring(device),
       buffers(device, deviceMemory, retired,
               {std::max(worldLimits.maxLights, kSurfaceLights),
                std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
-              pmr),
-      sets(device, shared.pipelines, retired, pmr),
-      scene(deviceMemory, retired, pmr),
-      simulation(pmr),
-      deforming(pmr),
-      flames(pmr),
-      particles(float(worldLimits.maxLights)),
-      particleFields(pmr),
-      surfaces(pmr),
-      refine(pmr),
-      outsideViews(pmr),
-      results(pmr) {
+              pmr) {
     results.times.reserve(computePasses().size() + drawPasses().size());
     const auto alignment = device.properties.limits.minUniformBufferOffsetAlignment;
     viewStride = uint32_t(alignUp(sizeof(ViewParams), alignment));
