@@ -163,7 +163,7 @@ uint64_t planPatterns(State& s) {
 void recordPatterns(State& s, FrameInFlight& slot) {
     if (!s.extended || patternsOf(s).placeGroups == 0) return;
     s.refine.takeEyes(s);
-    FrameRecorder recorder(s.recordTarget(slot, s.open.commands));
+    FrameRecorder recorder(s, slot);
     const double now =
         double(s.simulation.shownTick) + double(s.simulation.tickFraction) * gpu::kStepTicks;
     for (const uint32_t i : s.scene.awake) {

@@ -69,7 +69,6 @@ struct BackendState {
     OpenFrame open;
 
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame) noexcept;
-    [[nodiscard]] RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
     // Writes a view's parameters for the passes and draws that follow; returns their offset in
     // `views`. Throws where a frame has too many.
     uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);

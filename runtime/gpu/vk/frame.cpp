@@ -363,13 +363,11 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
                marches = looked && !s.flames.volumes.empty();
     if ((!burns && !marches && !emits && !fieldsShow) || !s.scene.lookTextures.live) return;
     const VkViewport whole{0, 0, 1, 1, 0, 1};
-    RecordTarget target = s.recordTarget(slot, s.open.commands);
-    target.profiles = s.scene.profiles.set.set;
     // A step of an own device has no view: lights alone, which flicker with simulated time.
     FwView none{};
     none.time = float(double(s.open.endTick) / kTicksPerSecond);
-    target.viewOffset = s.pushView(slot, looked ? from[0]->view : none, whole);
-    FrameRecorder r(target);
+    const uint32_t firstOffset = s.pushView(slot, looked ? from[0]->view : none, whole);
+    FrameRecorder r(s, slot, 0, firstOffset);
     beginPart(r, FramePart::effects);
     StepPush push{};
     push.now = s.open.endTick;
@@ -393,9 +391,8 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
     push.count = s.scene.flipbooks.live ? s.particles.flameFlipbooks : 0;
     const SparkPush sparks{room.lights, room.tiles + room.particles, moving.burnRow, 0};
     for (OutsideView* const of : from) {
-        if (of != from[0]) target.viewOffset = s.pushView(slot, of->view, whole);
-        target.view = of->number;
-        FrameRecorder view(target);
+        FrameRecorder view(s, slot, of->number,
+                           of == from[0] ? firstOffset : s.pushView(slot, of->view, whole));
         // The lights begin the first view's quads.
         if ((emits && !burns) || (burns && of->number != 0))
             view.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);

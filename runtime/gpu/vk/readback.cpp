@@ -191,10 +191,8 @@ ReadbackLayout layoutReadback(BackendState& s, const FramePlan& plan, uint64_t i
 }
 
 void recordReadback(BackendState& s, FrameInFlight& slot) {
-    RecordTarget target = s.recordTarget(slot, s.open.commands);
     const bool looked = s.open.viewCount > 0;
-    if (looked) target.view = s.open.views[0]->number;  // whose quads are counted
-    FrameRecorder r(target);
+    FrameRecorder r(s, slot, looked ? s.open.views[0]->number : 0);  // whose quads are counted
     ReadbackLayout& layout = slot.layout;
     const auto copy = [&](uint32_t resource, const ReadbackLayout::Piece& piece,
                           uint64_t from = 0) {

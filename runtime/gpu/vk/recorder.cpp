@@ -1,63 +1,62 @@
-#include "gpu/vk/recorder.h"
+#include "gpu/vk/backend_state.h"
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include "core/assert.h"
 
 namespace fw::gpu::vk {
 
 void FrameRecorder::barrier(std::span<const Use> uses) {
-    t_.barriers->use(t_.device->table, t_.commands, uses, t_.view);
+    s_.barriers.use(s_.device.table, s_.open.commands, uses, view_);
 }
 
 VkBuffer FrameRecorder::buffer(uint32_t resource) const {
-    return t_.buffers->buffer(resourceOf(resource, t_.view)).handle;
+    return s_.buffers.buffer(resourceOf(resource, view_)).handle;
 }
 
 const PassObjects& FrameRecorder::begin(uint32_t pass, uint32_t arguments) {
-    const PassObjects& objects = t_.pipelines->compute(pass);
+    const PassObjects& objects = s_.context.pipelines.compute(pass);
     const std::span<const Use> bound = objects.declared.uses();
     std::array<Use, ShaderInterface::kMost + 1> uses;
     size_t count = size_t(std::copy(bound.begin(), bound.end(), uses.begin()) - uses.begin());
     if (arguments != kNoResource) uses[count++] = {arguments, Access::indirect};
     barrier({uses.data(), count});
-    t_.slot->timers.begin(*t_.device, t_.commands, computePasses()[pass].name);
-    t_.device->table.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
+    slot_.timers.begin(s_.device, s_.open.commands, computePasses()[pass].name);
+    s_.device.table.CmdBindPipeline(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                    objects.pipeline);
     return objects;
 }
 
 void FrameRecorder::bind(uint32_t pass, const void* push, uint32_t arguments) {
-    const Table& vk = t_.device->table;
+    const Table& vk = s_.device.table;
     const PassObjects& objects = begin(pass, arguments);
-    const VkDescriptorSet set = t_.sets->compute(pass, t_.view);
-    vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
-                             &set, objects.declared.usesView() ? 1 : 0, &t_.viewOffset);
+    const VkDescriptorSet set = s_.sets.compute(pass, view_);
+    vk.CmdBindDescriptorSets(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
+                             &set, objects.declared.usesView() ? 1 : 0, &viewOffset_);
     if (const uint32_t bytes = computePasses()[pass].pushBytes)
-        vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes,
+        vk.CmdPushConstants(s_.open.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes,
                             push);
 }
 
-void FrameRecorder::end() { t_.slot->timers.end(*t_.device, t_.commands); }
+void FrameRecorder::end() { slot_.timers.end(s_.device, s_.open.commands); }
 
 void FrameRecorder::dispatchGroups(uint32_t pass, const void* push, uint32_t groups,
                                    uint32_t rows) {
     FW_ASSERT(rows > 0 && rows <= kMaxGroups, "%u rows of pass %s", rows,
               computePasses()[pass].name);
     bind(pass, push, kNoResource);
-    t_.device->table.CmdDispatch(t_.commands, std::min(groups, kMaxGroups), rows, 1);
+    s_.device.table.CmdDispatch(s_.open.commands, std::min(groups, kMaxGroups), rows, 1);
     end();
 }
 
 void FrameRecorder::dispatchAt(uint32_t pass, const void* push, uint32_t resource, uint64_t at) {
     bind(pass, push, resource);
-    t_.device->table.CmdDispatchIndirect(t_.commands, buffer(resource), at);
+    s_.device.table.CmdDispatchIndirect(s_.open.commands, buffer(resource), at);
     end();
 }
 
 void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
                                     std::span<const MarchedVolume> volumes, VolumesOf which) {
-    const Table& vk = t_.device->table;
+    const Table& vk = s_.device.table;
     const bool listed = which != VolumesOf::all;
     const auto taken = [&](const MarchedVolume& one) {
         return !listed || one.smokes == (which == VolumesOf::smoke);
@@ -66,23 +65,23 @@ void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
     const PassObjects& objects =
         begin(pass.number, listed ? uint32_t(FW_BIND_VOLUME_WORK) : kNoResource);
     const VkBuffer work = buffer(FW_BIND_VOLUME_WORK);
-    vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
-                             &t_.profiles, 0, nullptr);
-    const VkDescriptorSet set = t_.sets->compute(pass.number, t_.view);
+    vk.CmdBindDescriptorSets(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
+                             &s_.scene.profiles.set.set, 0, nullptr);
+    const VkDescriptorSet set = s_.sets.compute(pass.number, view_);
     for (const MarchedVolume& one : volumes) {
         if (!taken(one)) continue;
         // In the order of their bindings: the view, the flame.
-        const std::array<uint32_t, 2> offsets{t_.viewOffset, one.flame * kVolumeFlameBytes};
-        vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
-                                 &set, uint32_t(offsets.size()), offsets.data());
-        vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+        const std::array<uint32_t, 2> offsets{viewOffset_, one.flame * kVolumeFlameBytes};
+        vk.CmdBindDescriptorSets(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout,
+                                 0, 1, &set, uint32_t(offsets.size()), offsets.data());
+        vk.CmdPushConstants(s_.open.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                             sizeof one.march, &one.march);
         if (listed)
             vk.CmdDispatchIndirect(
-                t_.commands, work,
+                s_.open.commands, work,
                 one.march.flame * sizeof(VolumeWork) + offsetof(VolumeWork, groups));
         else
-            vk.CmdDispatch(t_.commands,
+            vk.CmdDispatch(s_.open.commands,
                            probeBlockCount(one.composite.tilesX, one.march.apart) *
                                probeBlockCount(one.composite.tilesY, one.march.apart),
                            1, 1);
@@ -92,7 +91,7 @@ void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
 
 void FrameRecorder::copyIn(const Staged& staged, uint32_t resource, uint64_t at) {
     const Use uses[] = {{resource, Access::copyWrite}};
-    copy(uses, t_.slot->upload.handle, buffer(resource), {staged.at, at, staged.bytes});
+    copy(uses, slot_.upload.handle, buffer(resource), {staged.at, at, staged.bytes});
 }
 
 void FrameRecorder::copyBetween(const Place& from, const Place& to, uint64_t bytes) {
@@ -101,22 +100,22 @@ void FrameRecorder::copyBetween(const Place& from, const Place& to, uint64_t byt
 }
 
 void FrameRecorder::copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes) {
-    FW_ASSERT(readbackAt + bytes <= t_.slot->readback.size, "%llu of %llu bytes of a readback",
-              (unsigned long long)(readbackAt + bytes), (unsigned long long)t_.slot->readback.size);
+    FW_ASSERT(readbackAt + bytes <= slot_.readback.size, "%llu of %llu bytes of a readback",
+              (unsigned long long)(readbackAt + bytes), (unsigned long long)slot_.readback.size);
     const Use uses[] = {{resource, Access::copyRead}};
-    copy(uses, buffer(resource), t_.slot->readback.handle, {from, readbackAt, bytes});
+    copy(uses, buffer(resource), slot_.readback.handle, {from, readbackAt, bytes});
 }
 
 void FrameRecorder::copy(std::span<const Use> uses, VkBuffer from, VkBuffer to,
                          const VkBufferCopy& region) {
     barrier(uses);
-    t_.device->table.CmdCopyBuffer(t_.commands, from, to, 1, &region);
+    s_.device.table.CmdCopyBuffer(s_.open.commands, from, to, 1, &region);
 }
 
 void FrameRecorder::fillZero(uint32_t resource, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyWrite}};
     barrier(uses);
-    t_.device->table.CmdFillBuffer(t_.commands, buffer(resource), at, bytes, 0);
+    s_.device.table.CmdFillBuffer(s_.open.commands, buffer(resource), at, bytes, 0);
 }
 
 }  // namespace fw::gpu::vk

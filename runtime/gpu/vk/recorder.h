@@ -1,4 +1,4 @@
-// One command buffer being recorded: dispatches, copies and draws by resource and pass, with their
+// The open frame's command buffer: dispatches, copies and draws by resource and pass, with their
 // barriers, timers and labels. Knows no order: that is frame.cpp's.
 #pragma once
 #include "core/assert.h"
@@ -11,18 +11,7 @@
 
 namespace fw::gpu::vk {
 
-struct RecordTarget {  // a recorder's surroundings, which outlive it
-    const Device* device = nullptr;
-    const Pipelines* pipelines = nullptr;
-    const PassSets* sets = nullptr;
-    const WorldBuffers* buffers = nullptr;
-    BarrierTracker* barriers = nullptr;
-    FrameInFlight* slot = nullptr;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    uint32_t viewOffset = 0;                    // of the passes that use the view
-    uint32_t view = 0;                          // whose resources they use
-    VkDescriptorSet profiles = VK_NULL_HANDLE;  // of those that use the fire profiles
-};
+struct BackendState;
 
 constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor; shaders stride over the rest
 // Groups of 64 that hold so many.
@@ -50,7 +39,10 @@ constexpr uint64_t uploaded(uint64_t bytes) noexcept { return alignUp(bytes, kUp
 
 class FrameRecorder {
  public:
-    explicit FrameRecorder(const RecordTarget& target) : t_(target) {}
+    // Passes use the resources of view `view`, and the parameters at `viewOffset` (pushView).
+    FrameRecorder(BackendState& state, FrameInFlight& slot, uint32_t view = 0,
+                  uint32_t viewOffset = 0)
+        : s_(state), slot_(slot), view_(view), viewOffset_(viewOffset) {}
 
     // At most kMaxGroups in a row.
     template <class Push>
@@ -80,16 +72,15 @@ class FrameRecorder {
 
     // Linear writes into the frame's upload buffer. Piece by piece: beginStaged, append any number
     // of times, endStaged.
-    [[nodiscard]] Staged beginStaged() const noexcept { return {t_.slot->uploadUsed}; }
+    [[nodiscard]] Staged beginStaged() const noexcept { return {slot_.uploadUsed}; }
     template <class T>
     void append(Staged& staged, std::span<const T> data) noexcept {
-        FW_ASSERT(t_.slot->uploadUsed + data.size_bytes() <= t_.slot->upload.size,
+        FW_ASSERT(slot_.uploadUsed + data.size_bytes() <= slot_.upload.size,
                   "%zu bytes behind %llu; the frame's needs are counted before", data.size_bytes(),
-                  (unsigned long long)t_.slot->uploadUsed);
+                  (unsigned long long)slot_.uploadUsed);
         if (!data.empty())
-            std::memcpy(t_.slot->upload.mapped + t_.slot->uploadUsed, data.data(),
-                        data.size_bytes());
-        t_.slot->uploadUsed += data.size_bytes();
+            std::memcpy(slot_.upload.mapped + slot_.uploadUsed, data.data(), data.size_bytes());
+        slot_.uploadUsed += data.size_bytes();
         staged.bytes += data.size_bytes();
         staged.count += uint32_t(data.size());
     }
@@ -97,7 +88,7 @@ class FrameRecorder {
     void appendOne(Staged& staged, const T& one) noexcept {
         append(staged, std::span<const T>(&one, 1));
     }
-    void endStaged() noexcept { t_.slot->uploadUsed = uploaded(t_.slot->uploadUsed); }
+    void endStaged() noexcept { slot_.uploadUsed = uploaded(slot_.uploadUsed); }
     template <class T>
     Staged stage(std::span<const T> data) noexcept {
         Staged staged = beginStaged();
@@ -137,7 +128,9 @@ class FrameRecorder {
     void dispatchGroups(uint32_t pass, const void* push, uint32_t groups, uint32_t rows);
     void dispatchAt(uint32_t pass, const void* push, uint32_t resource, uint64_t at);
 
-    RecordTarget t_;
+    BackendState& s_;
+    FrameInFlight& slot_;
+    uint32_t view_, viewOffset_;
 };
 
 }  // namespace fw::gpu::vk

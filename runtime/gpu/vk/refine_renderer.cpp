@@ -288,7 +288,7 @@ void RefineRenderer::record(BackendState& s, FrameInFlight& slot) {
     RefineRecord frame;
     frame.turn = chooseDue(s, now);
     if (!frame.turn && !full) return;
-    FrameRecorder recorder(s.recordTarget(slot, s.open.commands));
+    FrameRecorder recorder(s, slot);
     if (frame.turn) {
         listRefined(s, false);
         last = push;

@@ -147,18 +147,6 @@ void BackendState::openFrame(VkCommandBuffer commands, uint64_t ringFrame) noexc
     open.ringFrame = ringFrame;
 }
 
-RecordTarget BackendState::recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept {
-    RecordTarget target;
-    target.device = &device;
-    target.pipelines = &context.pipelines;
-    target.sets = &sets;
-    target.buffers = &buffers;
-    target.barriers = &barriers;
-    target.slot = &slot;
-    target.commands = commands;
-    return target;
-}
-
 uint32_t BackendState::pushView(FrameInFlight& slot, const FwView& view,
                                 const VkViewport& viewport) {
     if (slot.views == FrameRing::kMaxViews)
@@ -253,7 +241,7 @@ void VkBackend::run(const FramePlan& plan) {
     s.open.recording = true;
     s.barriers.begin(s.device.table, s.open.commands);
     slot.timers.reset(s.device, s.open.commands);
-    FrameRecorder recorder(s.recordTarget(slot, s.open.commands));
+    FrameRecorder recorder(s, slot);
     recordChanges(s, plan, needs, recorder);
     recordSteps(s, plan, needs, recorder);
     s.simulation.shownTick = plan.endTick;
