@@ -46,22 +46,6 @@ class Stopwatch {
 
 }  // namespace
 
-void CpuBackend::State::touch(uint32_t worldTile, uint32_t bits) noexcept {
-    FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
-    uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileListed) == 0) append(list, worldTile);
-    flag |= kTileListed | bits;
-}
-
-void CpuBackend::State::burning(uint32_t worldTile) noexcept {
-    uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileBurning) == 0) {
-        append(burnList, worldTile);
-        ++ownerOf(worldTile).counters.burningTiles;
-    }
-    flag |= kTileBurning;
-}
-
 void CpuBackend::State::requestToBurn(uint32_t worldTile) noexcept {
     FW_ASSERT(worldTile < requested.size(), "world tile %u of %zu", worldTile, requested.size());
     if (requested[worldTile] != 0) return;

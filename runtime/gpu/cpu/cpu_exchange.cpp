@@ -139,7 +139,7 @@ struct ExchangePass : PassBody {
         return *backend.warms[i].source;
     }
     void hotList(uint32_t, uint32_t worldTile, uint32_t bits) noexcept {
-        backend.listHot(worldTile, bits);
+        backend.enlist(backend.hotList, worldTile, kTileHot, bits);
     }
     void listSource(uint32_t, uint32_t place, uint32_t from, uint32_t cell,
                     uint32_t entry) noexcept {

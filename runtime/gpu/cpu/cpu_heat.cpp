@@ -19,15 +19,6 @@ void createHeat(CpuObject& object) {
     }
 }
 
-void CpuBackend::State::listHot(uint32_t worldTile, uint32_t bits) noexcept {
-    FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
-    uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileHot) == 0) append(hotList, worldTile);
-    flag |= kTileHot | bits;
-}
-
-void CpuBackend::State::hot(uint32_t worldTile) noexcept { listHot(worldTile, kTileWarm); }
-
 uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
     const TileState& tile = tiles[worldTile];
     const uint32_t local = at(tile.object).localTileOf(worldTile);

@@ -147,9 +147,23 @@ struct CpuBackend::State {
                   tileList.size());
         tileList.push_back(worldTile);
     }
-    void touch(uint32_t worldTile, uint32_t bits) noexcept;
+    // Puts a tile without the flag `bit` on its list; sets that and `more`. Whether it was new.
+    bool enlist(std::pmr::vector<uint32_t>& tileList, uint32_t worldTile, uint32_t bit,
+                uint32_t more = 0) noexcept {
+        FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
+        uint32_t& flag = tiles[worldTile].flag;
+        const bool isNew = (flag & bit) == 0;
+        if (isNew) append(tileList, worldTile);
+        flag |= bit | more;
+        return isNew;
+    }
+    void touch(uint32_t worldTile, uint32_t bits) noexcept {
+        enlist(list, worldTile, kTileListed, bits);
+    }
     void touchDependents(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
-    void burning(uint32_t worldTile) noexcept;
+    void burning(uint32_t worldTile) noexcept {
+        if (enlist(burnList, worldTile, kTileBurning)) ++ownerOf(worldTile).counters.burningTiles;
+    }
     // Where a limit counts the burning tiles, as shaders/lib/burn_budget.glsl.
     [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
         FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
@@ -160,8 +174,7 @@ struct CpuBackend::State {
     template <class Light>
     void requestThenBurn(uint32_t maxTiles, uint32_t now, const Light& light) noexcept;
     // Of objects with heat: the tile's temperature, water or flux changes from now on.
-    void hot(uint32_t worldTile) noexcept;
-    void listHot(uint32_t worldTile, uint32_t bits) noexcept;
+    void hot(uint32_t worldTile) noexcept { enlist(hotList, worldTile, kTileHot, kTileWarm); }
     // A frame: reserves what it needs (throws), runs a step, fills the readback.
     ReadbackStore& reserveReadback(const FramePlan& plan);
     void runStep(const StepPlan& step) noexcept;

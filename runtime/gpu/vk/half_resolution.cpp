@@ -19,24 +19,20 @@ void makeHalf(BackendState& s, HalfImages& half, VkFormat format, uint32_t width
     half.height = height;
     half.tilesY = (height + kHalfTile - 1) / kHalfTile;
     const Pipelines& pipelines = s.context.pipelines;
-    const auto make = [&](VkFormat of, uint32_t rows, const char* name) {
-        return s.deviceMemory.createImage(
+    const auto make = [&](HalfImage& one, VkFormat of, VkRenderPass pass, uint32_t rows,
+                          const char* name) {
+        one.image = s.deviceMemory.createImage(
             imageInfo(of, width, rows,
                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
             VK_IMAGE_ASPECT_COLOR_BIT, kComponentTargets, name);
+        // Read texel by texel.
+        one.set = makeImageSet(s.device, pipelines, one.image.view, pipelines.depthSampler());
+        one.buffer = makeFramebuffer(s.device, pass, {&one.image.view, 1}, width, rows);
     };
     try {
-        half.color = make(format, height, "half resolution");
-        half.depth = make(Pipelines::kHalfDepth, height + half.tilesY, "half resolution, depth");
-        // Read texel by texel.
-        half.colorSet =
-            makeImageSet(s.device, pipelines, half.color.view, pipelines.depthSampler());
-        half.depthSet =
-            makeImageSet(s.device, pipelines, half.depth.view, pipelines.depthSampler());
-        half.colorBuffer = makeFramebuffer(s.device, pipelines.halfPass(format),
-                                           {&half.color.view, 1}, width, height);
-        half.depthBuffer = makeFramebuffer(s.device, pipelines.halfDepthPass(),
-                                           {&half.depth.view, 1}, width, height + half.tilesY);
+        make(half.color, format, pipelines.halfPass(format), height, "half resolution");
+        make(half.depth, Pipelines::kHalfDepth, pipelines.halfDepthPass(), height + half.tilesY,
+             "half resolution, depth");
     } catch (...) {
         dropHalf(s, half);
         throw;
@@ -66,12 +62,9 @@ HalfImages& halfFor(BackendState& s, VkFormat format, uint32_t width, uint32_t h
 }  // namespace
 
 void dropHalf(BackendState& s, HalfImages& half) noexcept {
-    s.retired.push(
-        half.lastFrame,
-        {.image = half.color, .pool = half.colorSet.pool, .framebuffer = half.colorBuffer});
-    s.retired.push(
-        half.lastFrame,
-        {.image = half.depth, .pool = half.depthSet.pool, .framebuffer = half.depthBuffer});
+    for (const HalfImage& one : {half.color, half.depth})
+        s.retired.push(half.lastFrame,
+                       {.image = one.image, .pool = one.set.pool, .framebuffer = one.buffer});
     half = {};
 }
 
@@ -88,7 +81,8 @@ HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer com
         halfFor(s, target.key.halfColor, push.texelsX, push.texelsY, slot.frameIndex);
     const Table& vk = s.device.table;
     if (half.fresh) {
-        VkImageMemoryBarrier barrier = imageBarrier(half.depth.handle, VK_IMAGE_ASPECT_COLOR_BIT);
+        VkImageMemoryBarrier barrier =
+            imageBarrier(half.depth.image.handle, VK_IMAGE_ASPECT_COLOR_BIT);
         barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         recordBarriers(vk, commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
                        VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, {&barrier, 1});
@@ -99,7 +93,7 @@ HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer com
     const auto fill = [&](draw::Number number, uint32_t place, VkDescriptorSet set,
                           const VkViewport& part) {
         const VkPipelineLayout layout = s.context.pipelines.draw(number).layout;
-        beginPass(vk, commands, s.context.pipelines.halfDepthPass(), half.depthBuffer,
+        beginPass(vk, commands, s.context.pipelines.halfDepthPass(), half.depth.buffer,
                   {half.width, half.height + half.tilesY}, {&nothing, 1});
         slot.timers.begin(s.device, commands, drawPasses()[number].name);
         setViewport(s, commands, part);
@@ -115,14 +109,14 @@ HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer com
     };
     fill(draw::half_depth, 3, host.depth, {0, 0, float(half.width), float(half.height), 0, 1});
 
-    beginPass(vk, commands, s.context.pipelines.halfPass(half.format), half.colorBuffer,
+    beginPass(vk, commands, s.context.pipelines.halfPass(half.format), half.color.buffer,
               {half.width, half.height}, {&nothing, 1});
     const VkViewport halved{0, 0, 0.5f * viewport.width, 0.5f * viewport.height, 0, 1};
-    recordDraws(s, slot, commands, target, view, halved, {half.depthSet.set, VK_NULL_HANDLE},
+    recordDraws(s, slot, commands, target, view, halved, {half.depth.set.set, VK_NULL_HANDLE},
                 DrawPart::half);
     vk.CmdEndRenderPass(commands);
 
-    fill(draw::half_tiles, 1, half.colorSet.set,
+    fill(draw::half_tiles, 1, half.color.set.set,
          {0, float(half.height), float(push.tilesX), float(push.tilesY), 0, 1});
     s.targets.scissor = clip;
     return &half;

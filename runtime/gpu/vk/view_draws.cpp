@@ -175,9 +175,9 @@ class PassRecorder {
             case Textures::profiles:
                 return bindSet(place, s_.scene.profiles.set.set);
             case Textures::halfColor:
-                return bindSet(place, host.half->colorSet.set);
+                return bindSet(place, host.half->color.set.set);
             case Textures::halfDepth:
-                return bindSet(place, host.half->depthSet.set);
+                return bindSet(place, host.half->depth.set.set);
         }
     }
     void pushConstants(const void* push) {

@@ -9,14 +9,18 @@ namespace fw::gpu::vk {
 
 struct BackendState;
 
+struct HalfImage {
+    Image image;
+    ImageSet set;
+    VkFramebuffer buffer = VK_NULL_HANDLE;
+};
+
 // Images of half resolution, for targets with FW_TARGET_HALF_EFFECTS of one size and kind.
 struct HalfImages {
     VkFormat format = VK_FORMAT_UNDEFINED;       // of colour
     uint32_t width = 0, height = 0, tilesY = 0;  // texels; 0: none
-    Image color;  // soft effects of a view, premultiplied, encoded as its target
-    Image depth;  // the host's, and below it by tile whether it shows anything
-    ImageSet colorSet, depthSet;
-    VkFramebuffer colorBuffer = VK_NULL_HANDLE, depthBuffer = VK_NULL_HANDLE;
+    HalfImage color;         // soft effects of a view, premultiplied, encoded as its target
+    HalfImage depth;         // the host's, and below it by tile whether it shows anything
     uint64_t lastFrame = 0;  // that used it
     bool fresh = true;       // depth has no layout yet
 };

@@ -5,7 +5,6 @@
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
-#include "shared/field_draw.h"
 #include "shared/flipbook.h"
 #include "shared/look.h"
 #include "shared/refine.h"
