@@ -1,4 +1,4 @@
-// The parts of a Context that are tables: encodings of formats, and what hosts are told of it.
+// The parts of a Context that are tables: encodings of formats, and its description for hosts.
 #include "gpu/vk/vk_backend.h"
 
 #include <algorithm>
