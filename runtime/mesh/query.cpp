@@ -40,13 +40,19 @@ Units unitsOf(const BurnDomain& domain, const float point[3]) {
     return units;
 }
 int64_t squareOf(glm::i64vec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+// By component: vectors of 64 bits are slower here.
 int64_t squareTo(const TexelPosition& p, const Units& u) {
-    return squareOf((glm::i64vec3(p.units()) - u.at) >> int64_t(u.shift));
+    return squareOf(
+        {(p.x - u.at.x) >> u.shift, (p.y - u.at.y) >> u.shift, (p.z - u.at.z) >> u.shift});
 }
 int64_t squareTo(const TileBounds& b, const Units& u) {
-    const glm::i64vec3 low(b.low[0], b.low[1], b.low[2]), high(b.high[0], b.high[1], b.high[2]);
-    const glm::i64vec3 off = glm::max(glm::max(low - u.at, u.at - high), int64_t(0));
-    return squareOf(off >> int64_t(u.shift));
+    int64_t sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int64_t d =
+            std::max({b.low[k] - u.at[k], u.at[k] - b.high[k], int64_t(0)}) >> u.shift;
+        sum += d * d;
+    }
+    return sum;
 }
 
 // Calls visit(texel, square) for the real texels within a square distance that may shrink.

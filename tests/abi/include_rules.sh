@@ -33,7 +33,7 @@ editor/app|flamewright/|common/|import/|shell/|document/|link/|output/|script/|v
 editor/document|flamewright/|import/|model/|document/
 editor/output|flamewright/|import/|model/|document/|output/|tools/
 editor/script|flamewright/|import/|model/|document/|link/|output/|tools/|script/
-editor/tools|flamewright/|import/|document/|link/|output/|script/|scene/|tools/|flipbook/|core/|volume/|shared/
+editor/tools|flamewright/|import/|document/|link/|output/|script/|scene/|tools/|flipbook/|core/|volume/|reference/|shared/
 '
 
 sources() {
