@@ -15,7 +15,7 @@
 #include "flamewright/flamewright_vulkan.h"
 #include "profile_picture.h"
 #include "shell/icons.h"
-#include "volume/look.h"
+#include "volume/appearance.h"
 #include "whole_file.h"
 
 namespace fwapp {
@@ -168,7 +168,8 @@ namespace {
 
 // Tints a preset's picture with the preset's own colour, if it has one.
 void tintPixels(uint32_t preset, std::vector<uint8_t>& rgba) {
-    const fw::volume::FlameLook look = fw::volume::presetDef(fw::volume::FlamePreset(preset)).look;
+    const fw::volume::FlameAppearance look =
+        fw::volume::presetDef(fw::volume::FlamePreset(preset)).look;
     const float weight = look.tint[3];
     if (!(weight > 0)) return;
     // Without soot there is little glow to tint.
@@ -418,7 +419,8 @@ bool FlamePage::loadFromScene(App& app, fwedit::ObjectId id) {
     draft.speed = flame->speed;
     draft.ownColors = flame->tintWeight > 0;
     if (draft.ownColors) {
-        const float paler = fw::volume::FlameLook{}.tintWhite;  // a core without its own colour
+        const float paler =
+            fw::volume::FlameAppearance{}.tintWhite;  // a core without its own colour
         for (size_t i = 0; i < 3; ++i) {
             draft.edge[i] = flame->tint[i];
             draft.core[i] = std::lerp(std::lerp(flame->tint[i], 1.0f, paler), flame->coreTint[i],

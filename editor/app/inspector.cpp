@@ -49,7 +49,7 @@ constexpr Range kRanges[] = {{"output", 0, 60, "%.1f", true},
                              {"frames_per_second", 1, 120, "%.0f"},
                              {"map_size", 64, 2048, "%.0f"}};
 
-NumberLook lookOf(const FieldInfo& field) {
+NumberLook appearanceOf(const FieldInfo& field) {
     NumberLook look;
     look.unit = field.unit;
     look.least = float(field.low);
@@ -188,7 +188,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
         }
         case FieldType::Whole:
         case FieldType::Number: {
-            NumberLook look = lookOf(field);
+            NumberLook look = appearanceOf(field);
             if (kind == Kind::Settings || kind == Kind::Event) look.zero = nullptr;
             if (kind == Kind::Emitter && !std::strcmp(field.key, "speed")) look.zero = "By itself";
             const double share = look.unit == std::string_view("%") && field.high <= 2 ? 100 : 1;
@@ -215,7 +215,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
             const auto& list = std::get<std::vector<double>>(value);
             float numbers[3];
             for (size_t i = 0; i < 3; ++i) numbers[i] = i < list.size() ? float(list[i]) : 0;
-            NumberLook look = lookOf(field);
+            NumberLook look = appearanceOf(field);
             look.snap = 0.05f;
             if (!std::strcmp(field.unit, "°")) {
                 look.format = "%.0f°";

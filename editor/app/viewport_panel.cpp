@@ -904,10 +904,10 @@ float chooseMovingResolution(App& app) {
     constexpr float kMost = 1 / 18.0f;  // s per frame; the goal is 15 frames a second
     constexpr float kRoom = kMost * 0.64f * 0.64f * 0.9f;  // below it, the next higher resolution
                                                            // fits
-    constexpr uint32_t kLooks = 6;
+    constexpr uint32_t kAppearances = 6;
     Pace& pace = app.pace;
     pace.seconds += app.deltaTime;
-    if (++pace.frames >= kLooks) {
+    if (++pace.frames >= kAppearances) {
         const float mean = pace.seconds / float(pace.frames);
         if (mean > kMost && pace.step + 1 < std::size(kShares)) ++pace.step;
         if (mean < kRoom && pace.step > 0) --pace.step;

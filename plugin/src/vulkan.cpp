@@ -68,7 +68,7 @@ class VulkanDevice final : public Device {
         : memory_(memory),
           log_(log),
           context_(host, budget, &memory, log),
-          lookTextures_(&memory),
+          appearanceTextures_(&memory),
           fireProfiles_(components::bakeFireProfiles(&memory)) {}
 
     gpu::Backend* createBackend(const FwWorldDef& def) override {
@@ -81,9 +81,9 @@ class VulkanDevice final : public Device {
         limits.seed = def.seed;
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;
-        limits.looks.table = components::materialLooks();
-        limits.looks.textures = lookTextures();
-        limits.looks.profiles = fireProfiles_;
+        limits.appearances.table = components::materialLooks();
+        limits.appearances.textures = appearanceTextures();
+        limits.appearances.profiles = fireProfiles_;
         return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(
             context_, limits, &memory_, log_);
     }
@@ -101,7 +101,7 @@ class VulkanDevice final : public Device {
     }
     void unregisterTarget(FwTargetId id) override { context_.unregisterTarget(id); }
     void prepare() override {
-        lookTextures();
+        appearanceTextures();
         context_.prepare();
     }
     void step(gpu::Backend& given, world::World& world, float deltaTime) override {
@@ -127,10 +127,11 @@ class VulkanDevice final : public Device {
  private:
     // Baking takes 1/6 s, so the first world or fwContext_Prepare does it. Several threads may
     // create worlds.
-    const std::pmr::vector<std::byte>& lookTextures() {
-        const std::lock_guard lock(looksMutex_);
-        if (lookTextures_.empty()) lookTextures_ = components::bakeLookTextures(&memory_);
-        return lookTextures_;
+    const std::pmr::vector<std::byte>& appearanceTextures() {
+        const std::lock_guard lock(appearancesMutex_);
+        if (appearanceTextures_.empty())
+            appearanceTextures_ = components::bakeAppearanceTextures(&memory_);
+        return appearanceTextures_;
     }
     void requireOwn() const {
         if (!context_.ownDevice())
@@ -143,8 +144,8 @@ class VulkanDevice final : public Device {
     const core::Log& log_;
     gpu::vk::Context context_;
     // Kept for later worlds: a backend copies them at its creation.
-    std::mutex looksMutex_;
-    std::pmr::vector<std::byte> lookTextures_, fireProfiles_;
+    std::mutex appearancesMutex_;
+    std::pmr::vector<std::byte> appearanceTextures_, fireProfiles_;
 };
 
 VulkanDevice& vulkanOf(FwContext& context) {

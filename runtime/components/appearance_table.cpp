@@ -12,7 +12,7 @@ namespace {
 using gpu::MaterialAppearance;
 using gpu::vec4;
 
-static_assert(kLookCount == FW_MATERIAL_PRESET_COUNT);
+static_assert(kAppearanceCount == FW_MATERIAL_PRESET_COUNT);
 
 using M = MaterialAppearance;
 
@@ -159,7 +159,7 @@ struct Row {
     std::span<const Number> numbers;
     std::span<const Colour> colours = {};
 };
-constexpr Row kRows[kLookCount] = {
+constexpr Row kRows[kAppearanceCount] = {
     // by FwMaterialPreset
     {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStone, kStone, kStoneColours},
     {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseWood, kPine, kPineColours},
@@ -177,41 +177,45 @@ constexpr Row kRows[kLookCount] = {
     {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePlastic, kPlastic, kPlasticColours},
 };
 
-constexpr MaterialAppearance lookOf(uint32_t preset) {
+constexpr MaterialAppearance appearanceOf(uint32_t preset) {
     const Row& row = kRows[preset];
-    MaterialAppearance look = row.like == preset ? M{} : lookOf(row.like);
-    look.base = row.base;
-    for (const Number& number : row.numbers) look.*number.field = number.value;
-    for (const auto& [field, v] : row.colours) look.*field = vec4(v[0], v[1], v[2], v[3]);
-    return look;
+    MaterialAppearance appearance = row.like == preset ? M{} : appearanceOf(row.like);
+    appearance.base = row.base;
+    for (const Number& number : row.numbers) appearance.*number.field = number.value;
+    for (const auto& [field, v] : row.colours) appearance.*field = vec4(v[0], v[1], v[2], v[3]);
+    return appearance;
 }
 
-constexpr auto kLooks = [] {
-    std::array<MaterialAppearance, kLookCount> looks{};
-    for (uint32_t i = 0; i < kLookCount; ++i) looks[i] = lookOf(i);
-    return looks;
+constexpr auto kAppearances = [] {
+    std::array<MaterialAppearance, kAppearanceCount> appearances{};
+    for (uint32_t i = 0; i < kAppearanceCount; ++i) appearances[i] = appearanceOf(i);
+    return appearances;
 }();
 
 }  // namespace
 
-std::span<const MaterialAppearance, kLookCount> materialLooks() noexcept { return kLooks; }
-
-MaterialAppearance materialLook(uint32_t preset) noexcept {
-    return kLooks[preset < kLookCount ? preset : 0];
+std::span<const MaterialAppearance, kAppearanceCount> materialLooks() noexcept {
+    return kAppearances;
 }
 
-float lookHoleEnd(const gpu::MaterialAppearance& look) noexcept {  // holeDelay, appearance.glsl
-    return look.holeTime + 0.45f * look.holeVariation * (0.9f + 0.8f * look.holeFine) +
-           2.3f * look.jitter;
+MaterialAppearance materialAppearance(uint32_t preset) noexcept {
+    return kAppearances[preset < kAppearanceCount ? preset : 0];
 }
 
-mesh::RefineHoles holesOf(const gpu::MaterialAppearance& look) noexcept {
+float holeEndSeconds(
+    const gpu::MaterialAppearance& appearance) noexcept {  // holeDelay, appearance.glsl
+    return appearance.holeTime +
+           0.45f * appearance.holeVariation * (0.9f + 0.8f * appearance.holeFine) +
+           2.3f * appearance.jitter;
+}
+
+mesh::RefineHoles holesOf(const gpu::MaterialAppearance& appearance) noexcept {
     mesh::RefineHoles holes;
-    if (!(look.holeTime > 0)) return holes;
-    holes.variation = look.holeVariation / look.holeTime;
-    holes.wood = look.base == gpu::kBaseWood || look.base == gpu::kBasePaint;
-    holes.tilesX = holes.wood ? 2.6f : look.holeTiles;
-    holes.tilesY = holes.wood ? 0.3f * 2.6f : look.holeTiles / look.drip;
+    if (!(appearance.holeTime > 0)) return holes;
+    holes.variation = appearance.holeVariation / appearance.holeTime;
+    holes.wood = appearance.base == gpu::kBaseWood || appearance.base == gpu::kBasePaint;
+    holes.tilesX = holes.wood ? 2.6f : appearance.holeTiles;
+    holes.tilesY = holes.wood ? 0.3f * 2.6f : appearance.holeTiles / appearance.drip;
     return holes;
 }
 

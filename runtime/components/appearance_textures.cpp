@@ -4,7 +4,7 @@
 
 #include "core/assert.h"
 #include "core/hash.h"
-#include "shared/look.h"
+#include "shared/appearance.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 namespace fw::components {
 namespace {
 
-constexpr int kSide = int(kLookTextureSide);
+constexpr int kSide = int(kAppearanceTextureSide);
 constexpr int kColumns = 8;
 
 struct Texel {
@@ -312,28 +312,29 @@ void store(Plane& plane, std::byte* out) {
 
 }  // namespace
 
-size_t lookTextureOffset(uint32_t layer, uint32_t mip) noexcept {
-    FW_ASSERT(layer <= kLookTextureLayers && mip < kLookTextureMips, "layer %u, mip %u", layer,
-              mip);
+size_t appearanceTextureOffset(uint32_t layer, uint32_t mip) noexcept {
+    FW_ASSERT(layer <= kAppearanceTextureLayers && mip < kAppearanceTextureMips, "layer %u, mip %u",
+              layer, mip);
     size_t chain = 0, before = 0;
-    for (uint32_t i = 0; i < kLookTextureMips; ++i) {
-        const size_t bytes = size_t{kLookTextureSide >> i} * (kLookTextureSide >> i) * 4;
+    for (uint32_t i = 0; i < kAppearanceTextureMips; ++i) {
+        const size_t bytes =
+            size_t{kAppearanceTextureSide >> i} * (kAppearanceTextureSide >> i) * 4;
         chain += bytes;
         if (i < mip) before += bytes;
     }
     return layer * chain + before;
 }
 
-std::pmr::vector<std::byte> bakeLookTextures(std::pmr::memory_resource* memory) {
-    std::pmr::vector<std::byte> bytes(lookTextureOffset(kLookTextureLayers, 0), memory);
+std::pmr::vector<std::byte> bakeAppearanceTextures(std::pmr::memory_resource* memory) {
+    std::pmr::vector<std::byte> bytes(appearanceTextureOffset(kAppearanceTextureLayers, 0), memory);
     constexpr size_t kTexels = size_t{kSide} * kSide;
     Plane noise(kTexels, memory), charred(kTexels, memory), relief(kTexels, memory);
     bakeNoise(noise, memory);
     bakeChar(charred, memory);
     bakeRelief(noise, charred, relief);
-    store(noise, bytes.data() + lookTextureOffset(0, 0));
-    store(charred, bytes.data() + lookTextureOffset(1, 0));
-    store(relief, bytes.data() + lookTextureOffset(2, 0));
+    store(noise, bytes.data() + appearanceTextureOffset(0, 0));
+    store(charred, bytes.data() + appearanceTextureOffset(1, 0));
+    store(relief, bytes.data() + appearanceTextureOffset(2, 0));
     return bytes;
 }
 

@@ -8,13 +8,13 @@
 
 namespace fw::components {
 
-constexpr uint32_t kLookTextureSide = 512;
-constexpr uint32_t kLookTextureMips = 10;
-constexpr uint32_t kLookTextureLayers = 3;
+constexpr uint32_t kAppearanceTextureSide = 512;
+constexpr uint32_t kAppearanceTextureMips = 10;
+constexpr uint32_t kAppearanceTextureLayers = 3;
 
-// RGBA8 texels: layer by layer, each with its mips, largest first. See shaders/shared/look.h.
-[[nodiscard]] std::pmr::vector<std::byte> bakeLookTextures(std::pmr::memory_resource* memory);
+// RGBA8 texels: layer by layer, each with its mips, largest first. See shaders/shared/appearance.h.
+[[nodiscard]] std::pmr::vector<std::byte> bakeAppearanceTextures(std::pmr::memory_resource* memory);
 // Offset of a mip of a layer, bytes.
-[[nodiscard]] size_t lookTextureOffset(uint32_t layer, uint32_t mip) noexcept;
+[[nodiscard]] size_t appearanceTextureOffset(uint32_t layer, uint32_t mip) noexcept;
 
 }  // namespace fw::components

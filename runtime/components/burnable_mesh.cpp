@@ -57,10 +57,10 @@ bool sameTurn(const Pose& a, const Pose& b) noexcept {
     return a.scale == b.scale && std::memcmp(a.rotation, b.rotation, sizeof a.rotation) == 0;
 }
 
-// A look was tuned at its own spread rate: a material twice as fast ages twice as fast. 0: no
-// ageing.
+// An appearance was tuned at its own spread rate: a material twice as fast ages twice as fast. 0:
+// no ageing.
 float timeScale(const FwMaterialDef& def, float pace) noexcept {
-    const float tuned = materialLook(def.appearance).spreadRate;
+    const float tuned = materialAppearance(def.appearance).spreadRate;
     return tuned > 0 && def.spreadRate > 0 ? pace * def.spreadRate / tuned : 0.0f;
 }
 
@@ -335,7 +335,7 @@ bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain, const Dr
 uint32_t holeTicks(const BurnableMesh& object, uint32_t material, float pace) noexcept {
     FW_ASSERT(material < kMaterials, "material %u", material);
     const FwMaterialDef& def = object.materials[material];
-    const float holeTime = materialLook(def.appearance).holeTime;
+    const float holeTime = materialAppearance(def.appearance).holeTime;
     const float scale = timeScale(def, pace);
     if ((object.flags & FW_BURNABLE_NO_HOLES) || !(scale > 0) || !(holeTime > 0)) return 0;
     return uint32_t(std::min(holeTime * (float(gpu::kTicksPerSecond) / scale), 4.0e9f));
@@ -356,11 +356,11 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
         gpu::BurnMaterial& record = records.materials[i];
         record = fire::burnMaterial(def, f, winds[i]);
         if (const float scale = timeScale(def, drive.pace); scale > 0) record.timeScale = scale;
-        const gpu::MaterialAppearance look = materialLook(def.appearance);
-        if (record.timeScale > 0 && look.holeTime > 0) {
+        const gpu::MaterialAppearance appearance = materialAppearance(def.appearance);
+        if (record.timeScale > 0 && appearance.holeTime > 0) {
             const float ticks = float(gpu::kTicksPerSecond) / record.timeScale;
-            record.holeTicks = uint32_t(std::min(look.holeTime * ticks, 4.0e9f));
-            record.baseColor.w = std::min(lookHoleEnd(look) * ticks, 4.0e8f);
+            record.holeTicks = uint32_t(std::min(appearance.holeTime * ticks, 4.0e9f));
+            record.baseColor.w = std::min(holeEndSeconds(appearance) * ticks, 4.0e8f);
         }
     }
     standOnGround(domain, records.materials);
@@ -411,7 +411,7 @@ gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& d
     made.tileCount = domain.tileCount();
     made.window = records.timing.window;
     made.substepShift = records.timing.substepShift;
-    // Surfaces show a front that arrives within a minute of the look's own time.
+    // Surfaces show a front that arrives within a minute of the appearance's own time.
     uint32_t horizon = 0;
     for (uint32_t i = 0; i < kMaterials; ++i) {
         const gpu::BurnMaterial& m = records.materials[i];

@@ -22,11 +22,11 @@ uint32_t ticksOf(float seconds) noexcept {
 }
 
 // Stiffness against bending of fresh material, [0, 1].
-float softness(uint32_t look) noexcept {
-    return look == FW_MATERIAL_COTTON      ? 0.3f
-           : look == FW_MATERIAL_POLYESTER ? 0.05f
-           : look == FW_MATERIAL_LEATHER   ? 0.4f
-                                           : 0.8f;
+float softness(uint32_t appearance) noexcept {
+    return appearance == FW_MATERIAL_COTTON      ? 0.3f
+           : appearance == FW_MATERIAL_POLYESTER ? 0.05f
+           : appearance == FW_MATERIAL_LEATHER   ? 0.4f
+                                                 : 0.8f;
 }
 
 gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMaterial& record,
@@ -41,7 +41,7 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
     if (!(record.flags & 1) || !harmed) return made;
     made.charTicks = record.flameTicks;
     made.depth = def.recede * def.thickness;
-    const float opens = materialLook(def.appearance).holeTime;
+    const float opens = materialAppearance(def.appearance).holeTime;
     if (holes && opens > 0 && record.timeScale > 0) {
         made.holeSeconds = opens;
         made.holeTicks = ticksOf(opens / record.timeScale);

@@ -55,67 +55,69 @@ float flameScaleOf(float share, float before, bool first, float seconds) noexcep
 
 }  // namespace
 
-EmitterLook emitterLook(const FwFireEmitterDef& def) {
-    EmitterLook look;
+EmitterAppearance emitterAppearance(const FwFireEmitterDef& def) {
+    EmitterAppearance appearance;
     const float power = std::max(def.power, 0.01f);
     const bool jet = (def.flags & FW_EMITTER_JET) != 0;
     if (jet) {
         // Tuned for 2 MW, and scaled to other powers.
         const float scale = std::pow(power / 2000.0f, 0.25f);
-        look.diameter = 0.2f * scale;
-        look.rate = orElse(def.rate, 160);
-        look.speed = orElse(def.speed, 12 * std::sqrt(scale));
-        look.cone = orElse(def.cone, 0.055f);
-        look.life = orElse(def.life, 1.05f * std::sqrt(scale));
-        look.dragStream = orElse(def.drag, 1.5f);
-        look.dragTorn = 0.3f * look.dragStream;
-        look.liftTorn = 11 * def.buoyancy;
-        look.liftStream = -2.5f;
-        look.reach = 0.62f * look.speed * look.life;
-        look.size0 = orElse(def.size0, 0.14f * scale);
-        const float size1 = std::max(orElse(def.size1, 1.75f * scale), look.size0);
-        look.swell = 0.17f * (size1 - look.size0) / look.life;
-        look.grow = 0.83f * (size1 - look.size0) / std::max(look.reach, 0.1f);
-        look.eddies = 1.9f * std::sqrt(scale) * def.turbulence;
-        look.eddyScale = 1.5f / scale;
-        look.eddyDrift = 0.55f * look.speed;
-        look.wander = 0.05f * def.turbulence;
-        look.pulse = 0.12f * def.turbulence;
-        look.stretch = 5;
+        appearance.diameter = 0.2f * scale;
+        appearance.rate = orElse(def.rate, 160);
+        appearance.speed = orElse(def.speed, 12 * std::sqrt(scale));
+        appearance.cone = orElse(def.cone, 0.055f);
+        appearance.life = orElse(def.life, 1.05f * std::sqrt(scale));
+        appearance.dragStream = orElse(def.drag, 1.5f);
+        appearance.dragTorn = 0.3f * appearance.dragStream;
+        appearance.liftTorn = 11 * def.buoyancy;
+        appearance.liftStream = -2.5f;
+        appearance.reach = 0.62f * appearance.speed * appearance.life;
+        appearance.size0 = orElse(def.size0, 0.14f * scale);
+        const float size1 = std::max(orElse(def.size1, 1.75f * scale), appearance.size0);
+        appearance.swell = 0.17f * (size1 - appearance.size0) / appearance.life;
+        appearance.grow = 0.83f * (size1 - appearance.size0) / std::max(appearance.reach, 0.1f);
+        appearance.eddies = 1.9f * std::sqrt(scale) * def.turbulence;
+        appearance.eddyScale = 1.5f / scale;
+        appearance.eddyDrift = 0.55f * appearance.speed;
+        appearance.wander = 0.05f * def.turbulence;
+        appearance.pulse = 0.12f * def.turbulence;
+        appearance.stretch = 5;
     } else {
         // A pool fire: its diameter from its power or from the def (Heskestad, McCaffrey).
         const float own = std::pow(power / 1110.0f, 0.4f);
-        look.diameter = std::max(def.shape == FW_EMITTER_DISC ? 2 * def.radius : 0.6f * own, 0.02f);
+        appearance.diameter =
+            std::max(def.shape == FW_EMITTER_DISC ? 2 * def.radius : 0.6f * own, 0.02f);
         const float tall = 0.235f * std::pow(power, 0.4f);
-        const float height = std::max(tall - 1.02f * look.diameter, 0.35f * tall);
+        const float height = std::max(tall - 1.02f * appearance.diameter, 0.35f * tall);
         const float rise = 1.93f * std::pow(power, 0.2f);
-        look.liftTorn = look.liftStream = kFireLift * def.buoyancy;
-        look.dragStream = look.dragTorn = orElse(def.drag, kFireSpeed * rise / kFireLift);
-        look.speed = orElse(def.speed, 0.22f * rise);
-        look.cone = orElse(def.cone, 0.30f);
+        appearance.liftTorn = appearance.liftStream = kFireLift * def.buoyancy;
+        appearance.dragStream = appearance.dragTorn =
+            orElse(def.drag, kFireSpeed * rise / kFireLift);
+        appearance.speed = orElse(def.speed, 0.22f * rise);
+        appearance.cone = orElse(def.cone, 0.30f);
         const float life = std::clamp(1.6f * height / (0.6f * rise), 0.25f, 3.0f);
         const float rate = 50 + 10 * std::sqrt(power / 100);
-        look.life = orElse(def.life, life);
-        look.rate = orElse(def.rate, rate);
+        appearance.life = orElse(def.life, life);
+        appearance.rate = orElse(def.rate, rate);
         // A larger fire has more particles, each smaller for its size. All together they cover as
         // much, and shine as much, as a volumetric fire of the same power.
         const float fine = std::sqrt(kAtOnce / (rate * life));
-        look.size0 = orElse(def.size0, fine * (0.26f * look.diameter + 0.04f * tall));
-        const float size1 = orElse(def.size1, fine * (0.26f * look.diameter + 0.12f * tall));
-        look.swell = std::max(size1 - look.size0, 0.0f) / look.life;
-        look.eddies = 0.16f * rise * def.turbulence;
-        look.eddyScale = 1.6f / std::max(0.45f * tall, 0.03f);
-        look.eddyDrift = 0.5f * rise;
-        look.stretch = 2.2f;
-        look.kelvin0 = 1522;
-        look.kelvin1 = 1302;
-        look.reach = height;
+        appearance.size0 = orElse(def.size0, fine * (0.26f * appearance.diameter + 0.04f * tall));
+        const float size1 = orElse(def.size1, fine * (0.26f * appearance.diameter + 0.12f * tall));
+        appearance.swell = std::max(size1 - appearance.size0, 0.0f) / appearance.life;
+        appearance.eddies = 0.16f * rise * def.turbulence;
+        appearance.eddyScale = 1.6f / std::max(0.45f * tall, 0.03f);
+        appearance.eddyDrift = 0.5f * rise;
+        appearance.stretch = 2.2f;
+        appearance.kelvin0 = 1522;
+        appearance.kelvin1 = 1302;
+        appearance.reach = height;
     }
     if (def.temperature > 0) {
-        look.kelvin1 += def.temperature - look.kelvin0;
-        look.kelvin0 = def.temperature;
+        appearance.kelvin1 += def.temperature - appearance.kelvin0;
+        appearance.kelvin0 = def.temperature;
     }
-    return look;
+    return appearance;
 }
 
 void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter& emitter) {
@@ -173,7 +175,7 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     emitter.seed = def.seed ? def.seed : ownSeed;
     std::copy_n(def.position, 3, emitter.position);
     std::copy_n(direction, 3, emitter.direction);
-    emitter.look = emitterLook(def);
+    emitter.appearance = emitterAppearance(def);
 }
 
 void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction) {
@@ -188,7 +190,8 @@ void moveFireEmitter(FireEmitter& emitter, const float position[3], const float*
 void setEmitterPower(FireEmitter& emitter, float power) {
     checkValue(power, "power", 0.0f, kMaxPower);
     emitter.def.power = power;
-    if (power > 0) emitter.look = emitterLook(emitter.def);  // at 0, flying particles keep theirs
+    if (power > 0)
+        emitter.appearance = emitterAppearance(emitter.def);  // at 0, flying particles keep theirs
 }
 
 void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& obstacle,
@@ -208,8 +211,8 @@ void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& obstacl
 
 float longestParticleLife(const FireEmitter& emitter) {
     const FwFireEmitterDef& def = emitter.def;
-    FW_ASSERT(emitter.look.life > 0, "%g s", double(emitter.look.life));
-    const float fire = emitter.look.life * (1 + 1.55f * def.lifeVariance);
+    FW_ASSERT(emitter.appearance.life > 0, "%g s", double(emitter.appearance.life));
+    const float fire = emitter.appearance.life * (1 + 1.55f * def.lifeVariance);
     const bool smokes = def.smoke > 0 && !(def.flags & FW_EMITTER_NO_SMOKE);
     return fire * (smokes ? 1 + def.smokeLife : 1.0f);
 }
@@ -218,7 +221,8 @@ uint32_t particlesNeeded(const FireEmitter& emitter) {
     if (emitter.def.maxParticles) return emitter.def.maxParticles;
     const float stuck = emitter.def.stick > 0 ? kStuckRates : 0.0f;
     const double needed =
-        double(emitter.look.rate) * double(1 + stuck) * double(longestParticleLife(emitter)) + 4;
+        double(emitter.appearance.rate) * double(1 + stuck) * double(longestParticleLife(emitter)) +
+        4;
     return uint32_t(std::min(needed, 4e9));
 }
 
@@ -243,7 +247,7 @@ float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noex
     if (count == 0) return 0;
     for (uint32_t i = 0; i < count; ++i) record.patches[2 * i].w /= sum;
     record.stuck.y = float(count);
-    return std::min(sum, kStuckRates * emitter.look.rate);
+    return std::min(sum, kStuckRates * emitter.appearance.rate);
 }
 
 struct FrameOfEmitter {
@@ -290,7 +294,7 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
         births.vigour = flameScaleOf(emitter.share, births.vigour, births.filled == 0, f.seconds);
     // Shorter lives and as many more births keep the same number of particles.
     const double stream =
-        flows ? double(emitter.look.rate) * double(emitter.share / births.vigour) : 0.0;
+        flows ? double(emitter.appearance.rate) * double(emitter.share / births.vigour) : 0.0;
     f.rate = std::max(stream + double(f.stuckRate), 1e-3);
     if (f.burns) {
         const double sum = births.part + f.rate * double(f.seconds), whole = std::floor(sum);
@@ -326,7 +330,7 @@ void writeObstacles(const FireEmitter& emitter, double now, gpu::ParticleEmitter
 bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                     gpu::ParticleEmitter& record) noexcept {
     const FwFireEmitterDef& def = emitter.def;
-    const EmitterLook& look = emitter.look;
+    const EmitterAppearance& appearance = emitter.appearance;
     FireEmitter::Births& births = emitter.next;
     births = emitter.births;
     FrameOfEmitter f = followEmitter(emitter, frame);
@@ -346,27 +350,29 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     record.stuck.x = f.stuckRate / float(rate);
     record.from = with(f.from, seconds);
     // Quads born at a disc's edge reach to the edge, not beyond.
-    const float disc = std::max(def.radius - 0.4f * look.size0, 0.5f * def.radius);
-    record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? disc
-                                          : (def.flags & FW_EMITTER_JET) ? 0.1f * look.size0
-                                                                         : 0.2f * look.diameter);
+    const float disc = std::max(def.radius - 0.4f * appearance.size0, 0.5f * def.radius);
+    record.place =
+        with(emitter.position, def.shape == FW_EMITTER_DISC   ? disc
+                               : (def.flags & FW_EMITTER_JET) ? 0.1f * appearance.size0
+                                                              : 0.2f * appearance.diameter);
     if (onMesh) record.place = record.from = vec4(0, 0, 0, 0);  // the device has its tiles
     record.from.w = seconds;
     record.object = onMesh ? def.object.index1 : 0;
-    record.direction = with(emitter.direction, look.cone);
-    record.half_ = with(def.shape == FW_EMITTER_LINE ? def.extent : none, look.speed);
+    record.direction = with(emitter.direction, appearance.cone);
+    record.half_ = with(def.shape == FW_EMITTER_LINE ? def.extent : none, appearance.speed);
     record.carried = with(f.carried, def.ground);
     // The clock wraps: the sum over many ages hides it.
     record.wind = with(wind, float(std::fmod(air.now, 1024.0)));
-    record.up = with(air.up, look.pulse);
-    record.motion = {vigour * look.dragStream, vigour * look.dragTorn, look.liftTorn,
-                     look.liftStream};
-    record.turbulence = {look.eddies, look.eddyScale, look.eddyDrift, look.wander};
-    record.size = {look.size0, look.grow, look.swell, look.stretch};
+    record.up = with(air.up, appearance.pulse);
+    record.motion = {vigour * appearance.dragStream, vigour * appearance.dragTorn,
+                     appearance.liftTorn, appearance.liftStream};
+    record.turbulence = {appearance.eddies, appearance.eddyScale, appearance.eddyDrift,
+                         appearance.wander};
+    record.size = {appearance.size0, appearance.grow, appearance.swell, appearance.stretch};
     // Smoke lasts as long at any vigour; more puffs are thinner.
-    record.life = {vigour * look.life, def.lifeVariance, def.smokeLife / vigour,
+    record.life = {vigour * appearance.life, def.lifeVariance, def.smokeLife / vigour,
                    smokes ? def.smoke : 0.0f};
-    record.heat = {look.kelvin0, look.kelvin1, vigour * def.smokeDensity, 0};
+    record.heat = {appearance.kelvin0, appearance.kelvin1, vigour * def.smokeDensity, 0};
     record.first = emitter.first;
     record.ring = emitter.ring;
     record.head = births.head;
@@ -386,8 +392,9 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     // Waves of the stream at the frame's start and now: births lie between.
     const double phase = double(emitter.seed & 1023u) * 0.137;
     const auto waves = [&](double t) {
-        return vec4(look.wander * wave(9 * t, phase), look.wander * wave(9 * t, phase + 3.3),
-                    look.pulse * wave(23 * t, phase + 1.7), 0);
+        return vec4(appearance.wander * wave(9 * t, phase),
+                    appearance.wander * wave(9 * t, phase + 3.3),
+                    appearance.pulse * wave(23 * t, phase + 1.7), 0);
     };
     record.waves0 = waves(air.now - double(seconds));
     record.waves1 = waves(air.now);
@@ -398,22 +405,22 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
 
 FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t id,
                      uint64_t frameIndex) noexcept {
-    const EmitterLook& look = emitter.look;
+    const EmitterAppearance& appearance = emitter.appearance;
     FwLight light{};
     const bool jet = (emitter.def.flags & FW_EMITTER_JET) != 0;
     // The middle of the flames, and a later part of a jet.
-    const float along = jet ? 0.6f * look.reach : 0.15f * look.reach;
+    const float along = jet ? 0.6f * appearance.reach : 0.15f * appearance.reach;
     for (int i = 0; i < 3; ++i)
         light.position[i] = emitter.position[i] + emitter.direction[i] * along +
-                            (jet ? 0.0f : air.up[i] * 0.35f * look.reach);
+                            (jet ? 0.0f : air.up[i] * 0.35f * appearance.reach);
     light.color[0] = 1.717f;
     light.color[1] = 0.858f;
     light.color[2] = 0.292f;
-    light.radius = std::max(0.5f * look.diameter, 0.25f * look.reach);
+    light.radius = std::max(0.5f * appearance.diameter, 0.25f * appearance.reach);
     const double phase = double(emitter.seed & 1023u) * 0.137;
     // The light fades with the last particles.
     const double since = air.now - emitter.births.last - 0.1;
-    const auto left = float(std::clamp(1.0 - since / double(look.life), 0.0, 1.0));
+    const auto left = float(std::clamp(1.0 - since / double(appearance.life), 0.0, 1.0));
     light.power = 1000.0f * emitter.def.power;
     const float shines = flicker(air.now, phase);
     light.intensity = light.power * (kLightShare / kSphere) * shines * left;
@@ -439,19 +446,19 @@ FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t
 
 void fillEmitterState(const FireEmitter& emitter, const EmitterAir& air,
                       FwFireEmitterState& out) noexcept {
-    const EmitterLook& look = emitter.look;
+    const EmitterAppearance& appearance = emitter.appearance;
     const FwLight light = emitterLight(emitter, air, 0, 0);
     out.particles = emitter.births.filled;
     out.capacity = emitter.ring;
     out.userData = emitter.def.userData;
     out.power = emitter.def.power;
-    out.rate = look.rate;
-    out.life = look.life;
-    out.speed = look.speed;
-    out.reach = look.reach;
+    out.rate = appearance.rate;
+    out.life = appearance.life;
+    out.speed = appearance.speed;
+    out.reach = appearance.reach;
     out.blockedRays = isSwept(emitter.def) ? emitter.blockedRays : 0;
     out.clearDistance =
-        isSwept(emitter.def) && emitter.blockedRays > 0 ? emitter.clearDistance : look.reach;
+        isSwept(emitter.def) && emitter.blockedRays > 0 ? emitter.clearDistance : appearance.reach;
     out.heated = emitter.heated;
     if (emitter.stream) {
         double fuel = 0, power = 0;

@@ -15,7 +15,7 @@ struct ParticleEmitter;  // shared/particle.h
 namespace fw::components {
 
 // Parameters of the particles, from the def or else from its power.
-struct EmitterLook {
+struct EmitterAppearance {
     float diameter = 0.3f;                                  // m, of the fire
     float rate = 30, speed = 1, cone = 0.3f;                // 1/s, m/s, rad
     float size0 = 0.1f, grow = 0, swell = 0;                // m; per m of path; m/s
@@ -75,7 +75,7 @@ constexpr float kTeleport = 100;  // m/s; a faster move is a teleport
 
 struct FireEmitter {
     FwFireEmitterDef def{};
-    EmitterLook look;
+    EmitterAppearance appearance;
     EmitterFlipbooks flipbooks;
     float share = 1;  // of its births; on a mesh, the burning share of it
     uint32_t seed = 0;
@@ -116,7 +116,7 @@ inline bool isSwept(const FwFireEmitterDef& def) noexcept {
 // Sets the disc that ray `i` strikes; the disc before it still stops particles on their way there.
 void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& obstacle,
                     double now) noexcept;
-EmitterLook emitterLook(const FwFireEmitterDef& def);
+EmitterAppearance emitterAppearance(const FwFireEmitterDef& def);
 // Particles that the emitter needs at its power; s that a particle lasts at most.
 uint32_t particlesNeeded(const FireEmitter& emitter);
 float longestParticleLife(const FireEmitter& emitter);

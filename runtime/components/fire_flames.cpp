@@ -123,7 +123,7 @@ void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     def.position = f.stood + x * part.x + z * part.z;
     def.power = part.power;
     def.diameter = part.diameter;
-    def.look = fire.look;
+    def.appearance = fire.appearance;
     def.blend = fire.blend;
     def.profile = fire.profile;
     def.weight = 1.0f;

@@ -16,12 +16,12 @@ uint64_t whole(float value, float unit) noexcept {
 
 }  // namespace
 
-JetFlight jetFlight(const EmitterLook& look) noexcept {
+JetFlight jetFlight(const EmitterAppearance& appearance) noexcept {
     constexpr uint64_t kSubsteps = gpu::kExchangeSteps;
-    const uint64_t life = std::max<uint64_t>(whole(look.life, gpu::kTicksPerSecond), 1);
-    const uint64_t stream = whole(look.dragStream, gpu::kTicksPerSecond);
-    const uint64_t torn = std::min(whole(look.dragTorn, gpu::kTicksPerSecond), stream);
-    uint64_t speed = whole(look.speed, 1000) << 8, way = 0;  // mm/s, mm: Q8
+    const uint64_t life = std::max<uint64_t>(whole(appearance.life, gpu::kTicksPerSecond), 1);
+    const uint64_t stream = whole(appearance.dragStream, gpu::kTicksPerSecond);
+    const uint64_t torn = std::min(whole(appearance.dragTorn, gpu::kTicksPerSecond), stream);
+    uint64_t speed = whole(appearance.speed, 1000) << 8, way = 0;  // mm/s, mm: Q8
     JetFlight flight{};
     for (uint64_t i = 0; i < kJetParcels * kSubsteps; ++i) {
         // As shared/particle.h: smoothstep(0.15, 0.6, age in lives) of it is torn.

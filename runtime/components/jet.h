@@ -11,7 +11,7 @@
 
 namespace fw::components {
 
-struct EmitterLook;
+struct EmitterAppearance;
 
 constexpr uint32_t kJetRays = 16;
 constexpr uint32_t kJetParcels = 16;  // in flight at once: two seconds of stream
@@ -40,7 +40,7 @@ using JetHits = std::array<JetHit, kJetRays>;
 // mm that a parcel has flown at each exchange after its launch. Air slows it as it slows the
 // stream's particles.
 using JetFlight = std::array<uint32_t, kJetParcels + 1>;
-[[nodiscard]] JetFlight jetFlight(const EmitterLook& look) noexcept;
+[[nodiscard]] JetFlight jetFlight(const EmitterAppearance& appearance) noexcept;
 // Ticks from launch until the parcel has flown `millimetres`, between `exchange` and `exchange`
 // + 1.
 [[nodiscard]] uint32_t jetArrival(const JetFlight& flight, uint32_t exchange,

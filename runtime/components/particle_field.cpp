@@ -25,15 +25,15 @@ static_assert(FW_FIELD_OPEN_LEFT == gpu::kFieldOpenLeft &&
 }  // namespace
 
 void setFieldPreset(FwParticleFieldDef& def, uint32_t preset) noexcept {
-    const field::FieldLook look = field::fieldPreset(field::FieldPreset(preset));
-    def.amount = look.amount;
-    def.rise = look.rise;
-    def.spread = look.spread;
-    def.memory = look.memory;
-    def.chaos = look.chaos;
-    def.life = look.life;
-    def.detail = look.detail;
-    def.body = look.body;
+    const field::FieldAppearance appearance = field::fieldPreset(field::FieldPreset(preset));
+    def.amount = appearance.amount;
+    def.rise = appearance.rise;
+    def.spread = appearance.spread;
+    def.memory = appearance.memory;
+    def.chaos = appearance.chaos;
+    def.life = appearance.life;
+    def.detail = appearance.detail;
+    def.body = appearance.body;
     def.sourceSize = preset == FW_FIELD_FIRE ? 0.5f : 0.2f;
 }
 
@@ -76,8 +76,8 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     const bool ring = def.shape != FW_FIELD_BILLBOARD;
     field.def.width = def.width;
     field.def.height = def.height;
-    field.def.look = {def.amount, def.rise, def.spread, def.memory,
-                      def.chaos,  def.life, def.detail, def.body};
+    field.def.appearance = {def.amount, def.rise, def.spread, def.memory,
+                            def.chaos,  def.life, def.detail, def.body};
     field.def.stepRate = def.flags & core::reserved::kFieldStill ? kStillRate : def.stepRate;
     field.def.open =
         ring ? (def.open & (gpu::kFieldOpenTop | gpu::kFieldOpenBottom)) | gpu::kFieldRing
@@ -113,7 +113,7 @@ void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) no
 
 void setFieldAmount(ParticleField& field, float amount) {
     checkValue(amount, "amount", 0.0f, 4.0f);
-    field.def.look.amount = amount;
+    field.def.appearance.amount = amount;
 }
 
 void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept {
@@ -138,7 +138,7 @@ field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexc
     field::FieldRules rules = field::fieldRules(def);
     const int w = int(def.width), h = int(def.height);
     FW_ASSERT(w > 0 && h > 0, "%d x %d cells", w, h);
-    const uint32_t rate = field::emissionRate(def.look.amount);
+    const uint32_t rate = field::emissionRate(def.appearance.amount);
     if (field.source == FW_FIELD_SOURCE_PAINTED) {
         rules.paint = rate;
         return rules;
@@ -157,7 +157,7 @@ field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexc
     const int wide = std::clamp(int(field.sourceSize * float(w) + 0.5f), 1, w);
     // The same number of rows at any resolution, so that cells fill equally.
     const int rows = 2, left = (w - wide) / 2;
-    const bool falls = def.look.rise < 0;
+    const bool falls = def.appearance.rise < 0;
     source.cells = {left, falls ? h - rows : 0, left + wide, falls ? h : rows};
     return rules;
 }
@@ -181,16 +181,16 @@ gpu::FieldDraw fieldDraw(const ParticleField& field, double ticks, uint32_t step
     draw.place = {field.position[0], field.position[1], field.position[2],
                   still ? 1.0f : float(std::clamp(into, 0.0, 1.0))};
     draw.size = {field.size[0], field.size[1], field.size[2], field.opacity};
-    draw.right = axis(1, 0, 0, field.def.look.detail);
-    draw.up = axis(0, 1, 0, field.def.look.body);
+    draw.right = axis(1, 0, 0, field.def.appearance.detail);
+    draw.up = axis(0, 1, 0, field.def.appearance.body);
     draw.forward = axis(0, 0, 1, float(std::fmod(clock / kTicksPerSecond, kWrap)));
     draw.tint = {field.tint[0], field.tint[1], field.tint[2], float(field.def.stepRate)};
     draw.width = field.def.width;
     draw.height = field.def.height;
     draw.shape = field.shape;
-    const field::FieldLook& look = field.def.look;
-    const float life = look.life * float(field.def.stepRate);
-    draw.tall = std::clamp(std::fabs(look.rise) * life, 4.0f, float(field.def.height));
+    const field::FieldAppearance& appearance = field.def.appearance;
+    const float life = appearance.life * float(field.def.stepRate);
+    draw.tall = std::clamp(std::fabs(appearance.rise) * life, 4.0f, float(field.def.height));
     draw.seed = field.def.seed;
     return draw;
 }

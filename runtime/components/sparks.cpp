@@ -104,28 +104,28 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
         const auto& one = history.notes[i];
         record.keys[i + 1] = {one[0], one[1], one[2], one[3]};
     }
-    const EmitterLook& look = emitter.look;
+    const EmitterAppearance& appearance = emitter.appearance;
     const bool jet = (def.flags & FW_EMITTER_JET) != 0, onMesh = def.shape == FW_EMITTER_MESH;
     if (isSwept(def)) findWall(emitter, record);
     const float* along = emitter.direction;
-    record.direction = {along[0], along[1], along[2], look.cone};
-    record.half_.w = onMesh ? kTileSpeed : look.speed;
+    record.direction = {along[0], along[1], along[2], appearance.cone};
+    record.half_.w = onMesh ? kTileSpeed : appearance.speed;
     if (def.shape == FW_EMITTER_LINE)
-        record.half_ = {def.extent[0], def.extent[1], def.extent[2], look.speed};
+        record.half_ = {def.extent[0], def.extent[1], def.extent[2], appearance.speed};
     record.up = {air.up[0], air.up[1], air.up[2], def.ground};
     record.wind = {air.wind[0] * def.windResponse, air.wind[1] * def.windResponse,
                    air.wind[2] * def.windResponse,
-                   jet ? kJetPlume * look.speed
+                   jet ? kJetPlume * appearance.speed
                        : kPlume * std::pow(std::max(def.power, 0.01f), 0.2f) * def.buoyancy};
     record.wallNormal.w = onMesh ? 0 : def.inherit;
     record.radius = def.shape == FW_EMITTER_DISC ? def.radius
-                    : jet                        ? 0.1f * look.size0
-                                                 : 0.2f * look.diameter;
+                    : jet                        ? 0.1f * appearance.size0
+                                                 : 0.2f * appearance.diameter;
     const double turns = air.now / double(gpu::kSparkTurn), whole = std::floor(turns);
     record.part = float(turns - whole);
     record.turn = uint32_t(int64_t(whole));
     record.keyAge = float(air.now - double(step) * double(gpu::kSparkKeyStep));
-    record.kelvin = look.kelvin0 + kBrighter;
+    record.kelvin = appearance.kelvin0 + kBrighter;
     record.seed = emitter.seed;
     record.slots =
         std::min(uint32_t(std::ceil(double(most) * double(gpu::kSparkTurn))), gpu::kMaxSparks);

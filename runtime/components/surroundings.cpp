@@ -1,7 +1,7 @@
 #include "components/surroundings.h"
 
 #include "components/lights.h"
-#include "volume/look.h"
+#include "volume/appearance.h"
 
 #include "core/assert.h"
 

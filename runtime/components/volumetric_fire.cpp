@@ -77,7 +77,7 @@ std::pmr::vector<std::byte> bakeFireProfiles(std::pmr::memory_resource* memory) 
     volume::Profile profile;
     all.resize(gpu::kFirePresets * sizeof profile.texels);
     for (uint32_t i = 0; i < gpu::kFirePresets; ++i) {
-        volume::paintLook(volume::presetDef(volume::FlamePreset(i)).look, profile);
+        volume::paintLook(volume::presetDef(volume::FlamePreset(i)).appearance, profile);
         std::memcpy(all.data() + i * sizeof profile.texels, profile.texels.data(),
                     sizeof profile.texels);
     }
@@ -140,23 +140,23 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
     fire.windResponse = def.windResponse;
     fire.blend = def.blend;
     fire.userData = def.userData;
-    volume::FlameLook& look = fire.look;
-    look = volume::presetDef(volume::FlamePreset(def.preset)).look;
-    look.turbulence *= def.turbulence;
-    look.warp *= def.turbulence;
-    look.columns *= def.turbulence;
-    look.burn *= def.speed;
-    look.thickness *= def.density;
-    look.smoke *= def.smoke;
-    look.blue *= def.blue;
-    if (def.flags & FW_FIRE_NO_SMOKE) look.smoke = 0;
-    if (look.smoke <= 0) look.smokeTop = 1;
+    volume::FlameAppearance& appearance = fire.appearance;
+    appearance = volume::presetDef(volume::FlamePreset(def.preset)).appearance;
+    appearance.turbulence *= def.turbulence;
+    appearance.warp *= def.turbulence;
+    appearance.columns *= def.turbulence;
+    appearance.burn *= def.speed;
+    appearance.thickness *= def.density;
+    appearance.smoke *= def.smoke;
+    appearance.blue *= def.blue;
+    if (def.flags & FW_FIRE_NO_SMOKE) appearance.smoke = 0;
+    if (appearance.smoke <= 0) appearance.smokeTop = 1;
     if (def.tintWeight > 0) {
-        std::copy_n(def.tint, 3, look.tint);
-        look.tint[3] = def.tintWeight;
+        std::copy_n(def.tint, 3, appearance.tint);
+        appearance.tint[3] = def.tintWeight;
     }
-    std::copy_n(def.coreTint, 3, look.coreTint);
-    look.coreTint[3] = def.coreTintWeight;
+    std::copy_n(def.coreTint, 3, appearance.coreTint);
+    appearance.coreTint[3] = def.coreTintWeight;
 }
 
 uint32_t maxParts(float power, float diameter) noexcept {

@@ -60,7 +60,7 @@ struct FireControls {        // that the host turns while it burns
 struct VolumetricFire : FireControls {
     explicit VolumetricFire(std::pmr::memory_resource* memory) : track(memory) {}
 
-    volume::FlameLook look;
+    volume::FlameAppearance appearance;
     uint32_t flags = 0;  // FwVolumetricFireFlags
     uint32_t tier = 0;   // FwFireTier
     uint32_t preset = 0, seed = 0;
@@ -84,7 +84,7 @@ struct VolumetricFire : FireControls {
 
 void setFirePreset(FwVolumetricFireDef& def, uint32_t preset);
 const char* firePresetName(uint32_t preset) noexcept;
-// The data of LookSources::profiles.
+// The data of AppearanceSources::profiles.
 std::pmr::vector<std::byte> bakeFireProfiles(std::pmr::memory_resource* memory);
 // From a host's texels or cooked bytes. Throws core::Error; `profile` is then unchanged.
 void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* memory,

@@ -23,7 +23,7 @@ uint32_t fixed(float value, float one, float most) noexcept {
 
 }  // namespace
 
-FieldLook fieldPreset(FieldPreset preset) noexcept {
+FieldAppearance fieldPreset(FieldPreset preset) noexcept {
     switch (preset) {
         case FieldPreset::Smoke:
             return {0.6f, 0.5f, 0.5f, 0.6f, 0.3f, 3.0f, 0.4f, 1.0f};
@@ -36,18 +36,18 @@ FieldLook fieldPreset(FieldPreset preset) noexcept {
 }
 
 FieldRules fieldRules(const FieldDef& def) noexcept {
-    FW_ASSERT(def.stepRate > 0 && def.look.life > 0, "%u Hz, life %g s", def.stepRate,
-              double(def.look.life));
-    const FieldLook& look = def.look;
+    FW_ASSERT(def.stepRate > 0 && def.appearance.life > 0, "%u Hz, life %g s", def.stepRate,
+              double(def.appearance.life));
+    const FieldAppearance& appearance = def.appearance;
     FieldRules rules{};
     rules.forceX = int(std::lround(std::clamp(def.wind.x, -4.0f, 4.0f) * 128));
-    rules.forceY = int(std::lround(std::clamp(look.rise + def.wind.y, -4.0f, 4.0f) * 128));
+    rules.forceY = int(std::lround(std::clamp(appearance.rise + def.wind.y, -4.0f, 4.0f) * 128));
     // Half: with all of it, particles would never slow down.
-    rules.inertia = fixed(0.5f * look.memory, 256, 256);
-    rules.chaos = fixed(look.chaos, 256, 1024);
-    rules.spread = fixed(look.spread, float(kMaxFieldSpread), float(kMaxFieldSpread));
-    rules.memory = fixed(look.memory, 128, 128);
-    rules.death = fixed(1 - std::exp(-1 / (look.life * float(def.stepRate))), 65536, 65535);
+    rules.inertia = fixed(0.5f * appearance.memory, 256, 256);
+    rules.chaos = fixed(appearance.chaos, 256, 1024);
+    rules.spread = fixed(appearance.spread, float(kMaxFieldSpread), float(kMaxFieldSpread));
+    rules.memory = fixed(appearance.memory, 128, 128);
+    rules.death = fixed(1 - std::exp(-1 / (appearance.life * float(def.stepRate))), 65536, 65535);
     rules.seed = def.seed;
     rules.width = def.width;
     rules.height = def.height;

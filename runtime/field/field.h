@@ -18,7 +18,7 @@ using gpu::FieldRules;
 using gpu::FieldSource;
 
 // One set of parameters for fire, smoke and water.
-struct FieldLook {
+struct FieldAppearance {
     float amount = 1.0f;   // [0, 4]; 1 fills a cell of a source to white (255) in about 12 steps
     float rise = 0.9f;     // [-4, 4] cells a step, upwards; below 0 it falls
     float spread = 0.25f;  // [0, 1]; 1 is an eighth of a difference to each neighbour and step
@@ -31,11 +31,11 @@ struct FieldLook {
 
 enum class FieldPreset : uint32_t { Fire, Smoke, Water };
 constexpr uint32_t kFieldPresets = 3;
-FieldLook fieldPreset(FieldPreset preset) noexcept;
+FieldAppearance fieldPreset(FieldPreset preset) noexcept;
 
 struct FieldDef {
     uint32_t width = 64, height = 64;  // cells, [4, 256]; on a device the width in fours
-    FieldLook look;
+    FieldAppearance appearance;
     uint32_t stepRate = 20;              // Hz, [1, 120]
     vec2 wind{0.0f};                     // cells a step
     uint32_t open = gpu::kFieldOpenTop;  // kFieldOpen bits, or kFieldRing

@@ -147,7 +147,7 @@ gpu::BurnMaterial inertMaterial() noexcept {
 gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& facts,
                                const WindVector& wind) noexcept {
     gpu::BurnMaterial m = inertMaterial();
-    m.look = def.appearance;
+    m.appearance = def.appearance;
     m.thickness = def.thickness;
     m.roughness = def.baseRoughness;
     m.baseColor = {def.baseColor[0], def.baseColor[1], def.baseColor[2], 1};

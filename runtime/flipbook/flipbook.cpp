@@ -55,33 +55,35 @@ void checkFacts(const Facts& f) {
     check("seconds", double(f.seconds), 1e-3, 600);
 }
 
-std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_resource* memory) {
-    const Facts& f = book.facts;
+std::pmr::vector<std::byte> cookFlipbook(const Flipbook& flipbook,
+                                         std::pmr::memory_resource* memory) {
+    const Facts& f = flipbook.facts;
     checkFacts(f);
     const Sizes sizes = sizesOf(f);
-    if (book.texels.size() != sizes.texels || book.motion.size() != sizes.motion ||
-        book.rects.size() != f.frames)
+    if (flipbook.texels.size() != sizes.texels || flipbook.motion.size() != sizes.motion ||
+        flipbook.rects.size() != f.frames)
         core::failData(
             "the flipbook has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
             "%zu and %zu.",
-            book.texels.size(), book.motion.size(), book.rects.size() * sizeof(Rect), sizes.texels,
-            sizes.motion, f.frames * sizeof(Rect));
+            flipbook.texels.size(), flipbook.motion.size(), flipbook.rects.size() * sizeof(Rect),
+            sizes.texels, sizes.motion, f.frames * sizeof(Rect));
     std::pmr::vector<std::byte> out(memory);
     out.reserve(kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion);
     core::Writer writer(out);
     writer.number(kMagic), writer.number(kVersion), writer.number(uint64_t(0));
     visitFacts(writer, f);
-    for (const Rect& rect : book.rects) visitRect(writer, rect);
-    for (const std::span<const uint8_t> plane : {std::span(book.texels), std::span(book.motion)})
+    for (const Rect& rect : flipbook.rects) visitRect(writer, rect);
+    for (const std::span<const uint8_t> plane :
+         {std::span(flipbook.texels), std::span(flipbook.motion)})
         for (const uint8_t byte : plane) out.push_back(std::byte(byte));
     writer.numberAt(kSumAt, core::hashBytes(std::span(out).subspan(kSumEnd)));
     return out;
 }
 
-void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
+void readFlipbook(std::span<const std::byte> bytes, Flipbook& flipbook) {
     core::checkHead(bytes, ".fwbook", kHeaderBytes, kMagic, kVersion);
     core::Reader reader(bytes.subspan(kSumAt), ".fwbook");
-    Flipbook made(book.texels.get_allocator().resource());
+    Flipbook made(flipbook.texels.get_allocator().resource());
     Facts& f = made.facts;
     uint64_t sum = 0;
     reader.number(sum);
@@ -107,12 +109,12 @@ void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
     };
     take(sizes.texels, made.texels);
     take(sizes.motion, made.motion);
-    book = std::move(made);
+    flipbook = std::move(made);
 }
 
-bool emitsAlone(const Flipbook& book) noexcept {
-    for (size_t i = 2; i < book.texels.size(); i += 4)
-        if (book.texels[i] != 0) return false;
+bool emitsAlone(const Flipbook& flipbook) noexcept {
+    for (size_t i = 2; i < flipbook.texels.size(); i += 4)
+        if (flipbook.texels[i] != 0) return false;
     return true;
 }
 

@@ -50,11 +50,12 @@ void checkFacts(const Facts& facts);
 // .fwbook, little-endian: u32 magic 'FWBK', u32 version, u64 FNV-1a of the rest; u32 kind,
 // loops, width, height, frames, motionWidth, motionHeight, f32 maxMotion, seconds, u32 0; rects
 // (four u16 each), texels, motion.
-std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_resource* memory);
+std::pmr::vector<std::byte> cookFlipbook(const Flipbook& flipbook,
+                                         std::pmr::memory_resource* memory);
 // Throws core::Error; `book` is then unchanged.
-void readFlipbook(std::span<const std::byte> bytes, Flipbook& book);
+void readFlipbook(std::span<const std::byte> bytes, Flipbook& flipbook);
 
 // Whether no texel absorbs light: particles then add to the background in any order.
-bool emitsAlone(const Flipbook& book) noexcept;
+bool emitsAlone(const Flipbook& flipbook) noexcept;
 
 }  // namespace fw::flipbook

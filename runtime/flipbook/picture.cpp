@@ -13,7 +13,7 @@ namespace fw::flipbook {
 namespace {
 
 struct Block {
-    uint32_t book = 0, level = 0;
+    uint32_t flipbook = 0, level = 0;
     bool motion = false;
     uint32_t columns = 1, width = 0, height = 0;  // texels
     uint32_t x = 0, y = 0;
@@ -21,9 +21,9 @@ struct Block {
 
 constexpr uint32_t kBorder = 1;  // empty texels around a frame
 
-Block blockOf(const Facts& f, uint32_t book, uint32_t level, bool motion, uint32_t columns) {
+Block blockOf(const Facts& f, uint32_t flipbook, uint32_t level, bool motion, uint32_t columns) {
     const uint32_t rows = (f.frames + columns - 1) / columns;
-    Block block{book, level, motion, columns, 0, 0, 0, 0};
+    Block block{flipbook, level, motion, columns, 0, 0, 0, 0};
     block.width = columns * (motion ? f.motionWidth : (f.width >> level) + 2 * kBorder);
     block.height = rows * (motion ? f.motionHeight : (f.height >> level) + 2 * kBorder);
     return block;
@@ -92,11 +92,12 @@ void copyFrames(const Facts& f, const Block& block, std::span<const uint8_t> fro
 
 }  // namespace
 
-Picture packFlipbooks(std::span<const Flipbook* const> books, std::pmr::memory_resource* memory) {
+Picture packFlipbooks(std::span<const Flipbook* const> flipbooks,
+                      std::pmr::memory_resource* memory) {
     std::pmr::vector<Block> blocks(memory);
-    for (uint32_t i = 0; i < books.size(); ++i) {
-        if (!books[i]) continue;
-        const Facts& f = books[i]->facts;
+    for (uint32_t i = 0; i < flipbooks.size(); ++i) {
+        if (!flipbooks[i]) continue;
+        const Facts& f = flipbooks[i]->facts;
         const uint32_t cell = f.width + 2 * kBorder;
         const double square = std::sqrt(double(f.frames) * (f.height + 2) / cell);
         const uint32_t columns =
@@ -122,23 +123,23 @@ Picture packFlipbooks(std::span<const Flipbook* const> books, std::pmr::memory_r
                    picture.height, kMaxPicture, kMaxPicture);
     picture.texels.resize(size_t(4) * picture.width * picture.height);
     picture.words.resize(gpu::kFlipbookWords);
-    FW_ASSERT(books.size() <= gpu::kMaxFlipbooks, "%zu flipbooks", books.size());
+    FW_ASSERT(flipbooks.size() <= gpu::kMaxFlipbooks, "%zu flipbooks", flipbooks.size());
     for (const Block& block : blocks) {
-        const Flipbook& book = *books[block.book];
-        const Facts& f = book.facts;
+        const Flipbook& flipbook = *flipbooks[block.flipbook];
+        const Facts& f = flipbook.facts;
         if (block.motion) {
-            copyFrames(f, block, book.motion, picture);
+            copyFrames(f, block, flipbook.motion, picture);
         } else if (block.level == 0) {
-            copyFrames(f, block, book.texels, picture);
+            copyFrames(f, block, flipbook.texels, picture);
         } else {
             std::pmr::vector<uint8_t> smaller(memory);
             for (uint32_t level = 0; level < block.level; ++level)
-                smaller = halved(level ? std::span<const uint8_t>(smaller) : book.texels,
+                smaller = halved(level ? std::span<const uint8_t>(smaller) : flipbook.texels,
                                  f.width >> level, f.height >> level, f.frames, memory);
             copyFrames(f, block, smaller, picture);
         }
         gpu::FlipbookRecord record{};
-        uint32_t* words = picture.words.data() + size_t(block.book) * gpu::kFlipbookRecordWords;
+        uint32_t* words = picture.words.data() + size_t(block.flipbook) * gpu::kFlipbookRecordWords;
         std::memcpy(&record, words, sizeof record);
         const uint32_t border = block.motion ? 0 : kBorder;
         const uint32_t at = (block.x + border) | (block.y + border) << 16;
@@ -153,9 +154,9 @@ Picture packFlipbooks(std::span<const Flipbook* const> books, std::pmr::memory_r
         record.seconds = f.seconds;
         std::memcpy(words, &record, sizeof record);
         uint32_t* rects = picture.words.data() + gpu::kFlipbookRects +
-                          size_t(2) * block.book * gpu::kMaxFlipbookFrames;
-        for (size_t i = 0; i < book.rects.size(); ++i) {
-            const Rect& r = book.rects[i];
+                          size_t(2) * block.flipbook * gpu::kMaxFlipbookFrames;
+        for (size_t i = 0; i < flipbook.rects.size(); ++i) {
+            const Rect& r = flipbook.rects[i];
             rects[2 * i] = r.left | uint32_t(r.low) << 16;
             rects[2 * i + 1] = r.right | uint32_t(r.high) << 16;
         }

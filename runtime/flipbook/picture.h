@@ -14,8 +14,9 @@ struct Picture {
 
 constexpr uint32_t kMaxPicture = 4096;  // texels a side; every device supports it
 
-// `books` by slot, at most gpu::kMaxFlipbooks; null: an empty slot. Throws core::Error if they do
-// not fit.
-Picture packFlipbooks(std::span<const Flipbook* const> books, std::pmr::memory_resource* memory);
+// `flipbooks` by slot, at most gpu::kMaxFlipbooks; null: an empty slot. Throws core::Error if they
+// do not fit.
+Picture packFlipbooks(std::span<const Flipbook* const> flipbooks,
+                      std::pmr::memory_resource* memory);
 
 }  // namespace fw::flipbook

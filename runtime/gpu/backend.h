@@ -76,12 +76,12 @@ struct OcclusionUpdate {
     uint32_t cell = 0, counts = 0;  // as ExchangePush has them; cell 0: there is none
     std::span<const uint32_t> words;
 };
-inline void setOcclusionPush(const OcclusionUpdate& shield, ExchangePush& rules) noexcept {
-    rules.occlusionX = shield.origin.x;
-    rules.occlusionY = shield.origin.y;
-    rules.occlusionZ = shield.origin.z;
-    rules.occlusionCell = shield.cell;
-    rules.occlusionCounts = shield.counts;
+inline void setOcclusionPush(const OcclusionUpdate& grid, ExchangePush& rules) noexcept {
+    rules.occlusionX = grid.origin.x;
+    rules.occlusionY = grid.origin.y;
+    rules.occlusionZ = grid.origin.z;
+    rules.occlusionCell = grid.cell;
+    rules.occlusionCounts = grid.counts;
 }
 
 struct StepPlan {               // one fixed step of 1/32 s
@@ -95,9 +95,10 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool capped = false;        // and how many tiles may burn
     bool plays = false;         // some object may play a baked burn
     ExchangePush rules{};       // of the exchange; the backend fills the parts about lists
-    const ExchangeUpdate* remote = nullptr;   // null: nothing changed
-    const OcclusionUpdate* shield = nullptr;  // null: as it was; none at first, and after `restore`
-    std::span<const TexelEvent> events;       // sorted by (object, texel, order)
+    const ExchangeUpdate* exchangeUpdate = nullptr;  // null: nothing changed
+    const OcclusionUpdate* occlusionUpdate =
+        nullptr;                         // null: as it was; none at first, and after `restore`
+    std::span<const TexelEvent> events;  // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
 };
 
@@ -153,7 +154,7 @@ struct RestoredObject {
     ObjectImage image;
     BurnMaterial materials[kMaterialsPerObject];
     uint32_t window = 0, substepShift = 0;
-    bool rests = false;  // no part of it burnt: its image has counters alone
+    bool sleeps = false;  // no part of it burnt: its image has counters alone
 };
 
 // The cosmetic detail that a frame may have. It does not decide what burns: burn hashes are equal

@@ -24,7 +24,7 @@ constexpr float kSeenAside = 0.3f;  // of its height: less is seen along its axi
 constexpr uint32_t kMinLate = 1, kMaxLate = kAtlasFrames - kAtlasFrameStep - 2;
 
 bool isAlike(const AtlasKind& a, const AtlasKind& b, float keeps) noexcept {
-    if (a.look != b.look || !a.plain || !b.plain) return false;
+    if (a.appearance != b.appearance || !a.plain || !b.plain) return false;
     const auto within = [keeps](float x, float y, float most) {
         return std::abs(std::log(x / y)) < keeps * std::log(most);
     };
@@ -48,11 +48,11 @@ AtlasKind atlasKind(const FlameRecord& r, const FlameNode* nodes, uint32_t count
                              r.filamentBase,   r.filamentHeight, r.tipFill,  r.smoke,
                              r.smokeTop,       r.smokeAlbedo,    r.tintLow,  r.tintHigh,
                              float(r.profile), float(r.octaves)};
-    kind.look = core::hash32(r.tintCore);
+    kind.appearance = core::hash32(r.tintCore);
     for (const float number : numbers) {
         uint32_t bits = 0;
         std::memcpy(&bits, &number, sizeof bits);
-        kind.look = core::hash32(kind.look ^ bits);
+        kind.appearance = core::hash32(kind.appearance ^ bits);
     }
     kind.wide = std::max(r.low.w, 1e-4f);
     const float height = r.tauStart / 0.04f;  // without the pulse, as describeFlame has it

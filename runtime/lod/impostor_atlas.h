@@ -18,11 +18,11 @@ constexpr uint32_t kNoAtlas = ~0u;
 
 // The properties that make flames alike, whatever their size, seed and place.
 struct AtlasKind {
-    uint32_t look = 0;   // hash of all that is the same for any size
-    float wide = 0;      // m, diameter
-    float tall = 0;      // diameters, mean height
-    float facing = 0;    // cosine between its axis and the direction from the camera
-    bool plain = false;  // no collider bends it, it burns whole, its line is nearly straight
+    uint32_t appearance = 0;  // hash of all that is the same for any size
+    float wide = 0;           // m, diameter
+    float tall = 0;           // diameters, mean height
+    float facing = 0;         // cosine between its axis and the direction from the camera
+    bool plain = false;       // no collider bends it, it burns whole, its line is nearly straight
 };
 // `tip`: m, from its base to where its mean height ends; `facing` is the view's.
 AtlasKind atlasKind(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec3& tip);

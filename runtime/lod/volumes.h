@@ -1,7 +1,7 @@
 // Where a view shows its volumetric flames on the screen, and how the passes draw each. tiers.h
 // chooses between a march and an impostor.
 #pragma once
-#include "shared/look.h"
+#include "shared/appearance.h"
 #include "shared/volume_draw.h"
 
 #include <array>

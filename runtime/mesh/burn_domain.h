@@ -84,7 +84,7 @@ struct BakeReport {                       // for people and tests; never read by
     uint32_t vertices = 0, triangles = 0, charts = 0;
     uint32_t degenerate = 0, openEdges = 0, nonManifoldEdges = 0, seamEdges = 0;
     uint32_t realTexels = 0, forcedTexels = 0, rimTexels = 0, overlaps = 0;
-    uint32_t linksOpen = 0, linksLost = 0, readerless = 0;
+    uint32_t linksOpen = 0, linksLost = 0, withoutDependents = 0;
     uint32_t usedOwnUv = 0;  // 1: the mesh's UVs; 0: our packing
     uint32_t rechartedTriangles = 0;
 };

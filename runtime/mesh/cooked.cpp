@@ -43,7 +43,7 @@ void reportRecord(auto& s, auto& r) {  // all but the time: equal inputs, equal 
     s.numbers(r.meshArea, r.texelArea, r.linkMin, r.linkMax, r.aspectP99, r.aspectMax, r.vertices,
               r.triangles, r.charts, r.degenerate, r.openEdges, r.nonManifoldEdges, r.seamEdges,
               r.realTexels, r.forcedTexels, r.rimTexels, r.overlaps, r.linksOpen, r.linksLost,
-              r.readerless, r.usedOwnUv, r.rechartedTriangles);
+              r.withoutDependents, r.usedOwnUv, r.rechartedTriangles);
 }
 
 struct Counts {

@@ -281,7 +281,7 @@ uint32_t exchangeTiles(const BurnDomain& domain, std::pmr::vector<gpu::ExchangeT
 
 uint32_t sourceCells(std::span<const gpu::ExchangeTile> tiles) noexcept {
     uint32_t cells = 1;  // an empty tile is in the first one
-    for (const gpu::ExchangeTile& tile : tiles) cells = std::max(cells, gpu::tileCell(tile) + 1);
+    for (const gpu::ExchangeTile& tile : tiles) cells = std::max(cells, gpu::tileCluster(tile) + 1);
     return cells;
 }
 

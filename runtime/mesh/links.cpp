@@ -439,7 +439,7 @@ struct Linker {
             ++report.realTexels;
             report.forcedTexels += (grid.flags[i] & kTexelForced) != 0;
             report.rimTexels += (grid.flags[i] & kTexelRim) != 0;
-            report.readerless += dependents[i] == 0;
+            report.withoutDependents += dependents[i] == 0;
             eachRead(i, [&](uint32_t j) {
                 shortest = std::min(shortest, grid.distance(i, j));
                 longest = std::max(longest, grid.distance(i, j));

@@ -25,9 +25,9 @@ MotionRules rulesOf(const Flame& f, const FlameAir& air) noexcept {
     r.tauStart = f.record.tauStart, r.tauFree = f.record.tauFree;
     r.wind = air.wind;
     r.up = f.def.up;
-    r.dispersion = f.def.look.dispersion;
-    r.puff = f.def.look.puff;
-    r.burn = f.def.look.burn;
+    r.dispersion = f.def.appearance.dispersion;
+    r.puff = f.def.appearance.puff;
+    r.burn = f.def.appearance.burn;
     r.pull = air.neighbours.pull * (1.0f + 2.0f * air.neighbours.merged);
     r.seed = f.def.seed;
     return r;
@@ -47,7 +47,7 @@ void describe(Flame& f, const FlameAir& air) noexcept {
     f.size.diameter = f.def.diameter;
     f.size.height = heightOf(f, air);
     f.size.pulse = 1.0f;  // the mean; finish() adds the puffing
-    f.record = describeFlame(f.def.look, f.size, f.scroll, f.def.seed);
+    f.record = describeFlame(f.def.appearance, f.size, f.scroll, f.def.seed);
     f.record.puff *= f.tracked;  // live curves carry it in their radii
     f.record.profile = f.def.profile;
     FW_ASSERT(f.def.diameter > 0 && f.power >= 0, "%g m, %g kW", double(f.def.diameter),
@@ -92,7 +92,7 @@ const gpu::FlameNode& nodeAt(const Flame& f, float s) noexcept {
 }
 
 FlameLight lightOf(const Flame& f, vec3 position) noexcept {
-    const FlameLook& l = f.def.look;
+    const FlameAppearance& l = f.def.appearance;
     FlameLight light;
     light.position = position;
     light.radius = std::max(0.3f * f.size.height, 0.5f * f.size.diameter);
@@ -104,7 +104,7 @@ FlameLight lightOf(const Flame& f, vec3 position) noexcept {
 }
 
 void shine(Flame& f) noexcept {
-    const FlameLook& l = f.def.look;
+    const FlameAppearance& l = f.def.appearance;
     const float pulse = (f.size.pulse - 1.0f) / std::max(l.puff, 1e-3f);  // [-1, 1]
     const float now = 1.0f + l.flicker * (0.6f * pulse + 2.0f * flicker(f));
     f.light = lightOf(f, vec3(nodeAt(f, 0.4f * f.size.height).centre));
@@ -197,7 +197,7 @@ void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
     f.trackTime += dt;
     FW_ASSERT(f.tracked >= 0 && f.tracked <= 1, "weight %g", double(f.tracked));
     describe(f, air);
-    advanceScroll(f.scroll, f.def.look, f.record, dt);
+    advanceScroll(f.scroll, f.def.appearance, f.record, dt);
     f.scroll.puff = f.motion.phase;
     describe(f, air);
     const MotionRules rules = rulesOf(f, air);
@@ -232,7 +232,7 @@ FlameAnswer queryFlame(const Flame& f, const Profile& profile, vec3 point,
         a.rho = -1.0f;
     }
     // Radiation: four points along the axis, never nearer than half the flame's width.
-    const float radiated = 1000.0f * f.power * f.def.look.radiant;
+    const float radiated = 1000.0f * f.power * f.def.appearance.radiant;
     float flux = 0.0f;
     for (int k = 0; k < 4 && !a.inside; ++k) {
         const vec3 from(nodeAt(f, height * (0.1f + 0.2f * float(k))).centre), to = point - from;

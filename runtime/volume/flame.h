@@ -16,7 +16,7 @@ struct FlameDef {
     float power = 60.0f;        // kW, [0, 1e6]; 0: it goes out
     float diameter = 0.6f;      // m, (0, 100]
     float height = 0.0f;        // m, visible; 0: Heskestad's, from power and diameter
-    FlameLook look;
+    FlameAppearance appearance;
     FlameDriver driver = FlameDriver::Live;
     float blend = 0.3f;   // s from one driver to another
     float weight = 1.0f;  // [0, 1] of the track or the host over the live motion

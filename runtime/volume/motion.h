@@ -1,8 +1,8 @@
 // Motion of a flame's curve: particles of hot gas that rise, lean, stray and meet walls; or a
 // recorded track; or a mixture of both. Cosmetic, fixed step, repeatable by seed; no heap.
 #pragma once
+#include "volume/appearance.h"
 #include "volume/collide.h"
-#include "volume/look.h"
 
 #include <memory_resource>
 #include <vector>

@@ -2,7 +2,7 @@
 #include "volume/neighbours.h"
 
 #include "core/assert.h"
-#include "volume/look.h"
+#include "volume/appearance.h"
 
 #include <algorithm>
 #include <cmath>

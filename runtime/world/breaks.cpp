@@ -58,7 +58,7 @@ void BurnSystem::planBreaks(uint64_t end) noexcept {
     frame_.breaks.clear();
     for (const Object* object : scene_.touched) {
         const Breaks* breaks = object->breaks.get();
-        if (!breaks || breaks->lookCount == breaks->looks.size() ||
+        if (!breaks || breaks->checkCount == breaks->checks.size() ||
             !(isActive(*object) || breaks->waits))
             continue;
         const uint64_t off = uint64_t(object->slot) * gpu::kStepTicks;
@@ -72,8 +72,8 @@ void BurnSystem::planBreaks(uint64_t end) noexcept {
 void BurnSystem::commitBreaks(uint64_t frameIndex) noexcept {
     for (const uint32_t slot : frame_.breaks) {
         Breaks& breaks = *scene_.objectAt(slot).breaks;
-        FW_ASSERT(breaks.lookCount < breaks.looks.size(), "%u looks", breaks.lookCount);
-        breaks.looks[breaks.lookCount++] = frameIndex;
+        FW_ASSERT(breaks.checkCount < breaks.checks.size(), "%u checks", breaks.checkCount);
+        breaks.checks[breaks.checkCount++] = frameIndex;
     }
 }
 
@@ -191,11 +191,12 @@ void BurnSystem::onBurnMap(Object& object, const gpu::ObjectImage& map,
                            const gpu::Readback& readback) noexcept {
     if (!object.breaks) return;
     Breaks& breaks = *object.breaks;
-    FW_ASSERT(breaks.lookCount <= breaks.looks.size(), "%u looks", breaks.lookCount);
-    const auto end = breaks.looks.begin() + breaks.lookCount;
-    const auto later = std::upper_bound(breaks.looks.begin(), end, readback.frameIndex);
-    if (later == breaks.looks.begin()) return;
-    breaks.lookCount = uint32_t(std::copy(later, end, breaks.looks.begin()) - breaks.looks.begin());
+    FW_ASSERT(breaks.checkCount <= breaks.checks.size(), "%u checks", breaks.checkCount);
+    const auto end = breaks.checks.begin() + breaks.checkCount;
+    const auto later = std::upper_bound(breaks.checks.begin(), end, readback.frameIndex);
+    if (later == breaks.checks.begin()) return;
+    breaks.checkCount =
+        uint32_t(std::copy(later, end, breaks.checks.begin()) - breaks.checks.begin());
     findBreaks(object, map.ticks, map.heat, readback.endTick, &readback.frameIndex);
 }
 

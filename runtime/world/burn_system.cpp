@@ -138,10 +138,10 @@ void BurnSystem::onReadback(const gpu::Readback& readback) noexcept {
 
 void BurnSystem::settle(const gpu::Readback& readback) noexcept {
     const BurnCounts& counts = state_.counts;
-    const bool rests =
+    const bool isSleeping =
         counts.front == 0 && counts.burning == 0 && counts.hot == 0 && counts.receivers == 0;
-    state_.seenIdle |= rests && readback.endTick >= state_.seenStimulus + kSettleTicks;
-    if (rests && readback.endTick >= state_.lastStimulus + kSettleTicks) state_.idle = true;
+    state_.seenIdle |= isSleeping && readback.endTick >= state_.seenStimulus + kSettleTicks;
+    if (isSleeping && readback.endTick >= state_.lastStimulus + kSettleTicks) state_.idle = true;
 }
 
 void BurnSystem::applyCounters(const gpu::Readback& readback) noexcept {
@@ -300,7 +300,7 @@ void BurnSystem::restoreObject(Object& object) noexcept {
     ++object.changes;
     if (object.play.burn1 != 0) startPlay(object);
     if (object.breaks) {  // it has not burnt, or restoreBreaks comes next
-        object.breaks->lookCount = 0;
+        object.breaks->checkCount = 0;
         object.breaks->shareReported = object.breaks->waits = false;
         std::fill(object.breaks->lost.begin(), object.breaks->lost.end(), false);
     }

@@ -227,13 +227,13 @@ struct SetGusts {
     FW_SERIALIZE(strength, size)
 };
 
-struct SetHeatShield {  // empty, until SetShieldCells and AddShieldObject follow
+struct SetHeatOcclusion {  // empty, until SetOcclusionCells and AddOcclusionObject follow
     components::OcclusionGridShape shape;
 
     FW_SERIALIZE(shape)
 };
 
-struct SetShieldCells {
+struct SetOcclusionCells {
     static constexpr uint32_t kCount = 12;  // of 32 cells each
     uint32_t first = 0;                     // word
     std::array<uint32_t, kCount> values{};
@@ -241,7 +241,7 @@ struct SetShieldCells {
     FW_SERIALIZE(first, values)
 };
 
-struct AddShieldObject {
+struct AddOcclusionObject {
     uint32_t object1 = 0;  // slot + 1; 0: none
     bool last = false;     // the objects added so far fill their cells
 
@@ -264,8 +264,8 @@ struct TransferBurn {
 using Command = std::variant<SetWind, SetFlags, IgniteTexels, IgniteObjects, WetPatch, SetPose,
                              MoveHeatOccluder, MoveFire, SetFirePower, MoveEmitter, SetEmitterPower,
                              MoveField, SetFieldAmount, SetWindZone, SetRoom, PlayBurn, StopBurn,
-                             SetWindGrid, SetWindPoints, SetGusts, SetHeatShield, SetShieldCells,
-                             AddShieldObject, ShiftOrigin, TransferBurn>;
+                             SetWindGrid, SetWindPoints, SetGusts, SetHeatOcclusion,
+                             SetOcclusionCells, AddOcclusionObject, ShiftOrigin, TransferBurn>;
 constexpr uint32_t kCommandKinds = std::variant_size_v<Command>;
 
 // The fields alone; the kind is the caller's to write.

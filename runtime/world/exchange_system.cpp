@@ -159,8 +159,8 @@ gpu::ExchangePush ExchangeSystem::rules() const noexcept {
 
 // An object under another wind keeps its place and its contacts.
 void ExchangeSystem::updateWind(Object& object, int wind) noexcept {
-    if (object.exchangeVersion == 0 || wind == object.remote.high.w) return;
-    object.remote.high.w = wind;
+    if (object.exchangeVersion == 0 || wind == object.exchangeObject.high.w) return;
+    object.exchangeObject.high.w = wind;
     markUnsent(object);
 }
 
@@ -202,13 +202,14 @@ void ExchangeSystem::latchPoses(uint32_t now) {
         Object& object = scene_.objectAt(slot);
         gpu::ExchangeObject record = recordOf(object);
         record.high.w = int(wind_.localWindOf(object, now));
-        record.neighbourFirst = object.remote.neighbourFirst;
-        record.neighbourCount = object.remote.neighbourCount;
+        record.neighbourFirst = object.exchangeObject.neighbourFirst;
+        record.neighbourCount = object.exchangeObject.neighbourCount;
         updateWind(object, record.high.w);
-        if (object.exchangeVersion != 0 && std::memcmp(&record, &object.remote, sizeof record) == 0)
+        if (object.exchangeVersion != 0 &&
+            std::memcmp(&record, &object.exchangeObject, sizeof record) == 0)
             continue;
         keepPlanned();
-        object.remote = record;
+        object.exchangeObject = record;
         updateReach(object);
         if (object.exchangeVersion == 0 && !object.touched) transfer_.waiting.add(slot);
         object.exchangeVersion = ++transfer_.version;
@@ -251,12 +252,12 @@ void ExchangeSystem::rebuild() {
     for (auto [slot, object] : scene_.objects.entries()) {
         const bool placed = object.exchangeVersion != 0;
         const bool meets =
-            placed && object.remote.flags & gpu::kExchangeLive && slot <= Neighbours::kSlot;
+            placed && object.exchangeObject.flags & gpu::kExchangeLive && slot <= Neighbours::kSlot;
         if (placed) transfer_.unsentSlots.add(slot);
         if (placed && !object.touched) transfer_.waiting.add(slot);
         if (meets) transfer_.contactsDue.add(slot);
         if (meets && context_.def.visibility) transfer_.seenDue.add(slot);
-        if (meets) transfer_.neighbours.place(slot, boxOf(object.remote), object.reach);
+        if (meets) transfer_.neighbours.place(slot, boxOf(object.exchangeObject), object.reach);
     }
     std::erase_if(transfer_.pairs, [&](const PairContacts& pair) {
         for (int k = 0; k < 2; ++k) {
@@ -385,8 +386,8 @@ void ExchangeSystem::findLinks(uint32_t now) {
 void ExchangeSystem::linkClose(Object& object, uint32_t now) {
     const uint64_t stamp = ++transfer_.contactStamp;
     const auto meet = [&](uint32_t other) {
-        if (mesh::gapOf(boxOf(object.remote), boxOf(scene_.objectAt(other).remote)) >
-            int(gpu::kContactGap))
+        if (mesh::gapOf(boxOf(object.exchangeObject),
+                        boxOf(scene_.objectAt(other).exchangeObject)) > int(gpu::kContactGap))
             return;
         const Object& a = object.slot < other ? object : scene_.objectAt(other);
         const Object& b = object.slot < other ? scene_.objectAt(other) : object;
@@ -401,8 +402,8 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         dropLinks(a.slot, b.slot);
         dropLinks(b.slot, a.slot);
         const Object* const both[2] = {&a, &b};
-        mesh::findContacts({{&scene_.domainOf(a), &a.remote, burnMask(a.data)},
-                            {&scene_.domainOf(b), &b.remote, burnMask(b.data)}},
+        mesh::findContacts({{&scene_.domainOf(a), &a.exchangeObject, burnMask(a.data)},
+                            {&scene_.domainOf(b), &b.exchangeObject, burnMask(b.data)}},
                            transfer_.contacts);
         for (int k = 0; k < 2; ++k)
             addLinks(*both[k], *both[1 - k], transfer_.contacts.found[k], since);
@@ -417,11 +418,11 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
     // Where all objects are latched as they stand now, the few that are so near are found among
     // all; else among its neighbours, which are many.
     if (scene_.moved.empty() || frame_.latched) {
-        const mesh::Box box = boxOf(object.remote);
+        const mesh::Box box = boxOf(object.exchangeObject);
         for (const uint32_t other : scene_.objectsNear(box, 0.001f * float(gpu::kContactGap))) {
             const Object& o = scene_.objectAt(other);
             if (other != object.slot && o.exchangeVersion != 0 &&
-                o.remote.flags & gpu::kExchangeLive && other <= Neighbours::kSlot)
+                o.exchangeObject.flags & gpu::kExchangeLive && other <= Neighbours::kSlot)
                 meet(other);
         }
     } else {
@@ -498,7 +499,7 @@ void ExchangeSystem::dropLinks(uint32_t to, uint32_t from) noexcept {
 // next exchange.
 void ExchangeSystem::forgetObject(const Object& object) noexcept {
     countGoverned(object, false);
-    removeFromShield(object.slot);
+    removeOccluderCells(object.slot);
     transfer_.unsent |= object.exchangeVersion != 0;
     const uint32_t slot = object.slot;
     for (SlotSet* set : slotSets()) set->erase(slot);
@@ -540,11 +541,11 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
         if (!owned) continue;
         Object& object = **owned;
         const ListPlace list = transfer_.neighbours.pool().placeOf(slot);
-        if (object.remote.neighbourFirst == list.first &&
-            object.remote.neighbourCount == list.count)
+        if (object.exchangeObject.neighbourFirst == list.first &&
+            object.exchangeObject.neighbourCount == list.count)
             continue;
-        object.remote.neighbourFirst = list.first;
-        object.remote.neighbourCount = list.count;
+        object.exchangeObject.neighbourFirst = list.first;
+        object.exchangeObject.neighbourCount = list.count;
         if (object.exchangeVersion != 0) markUnsent(object);
     }
     if (frame_.used == frame_.tables.size())
@@ -554,21 +555,21 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
     tables.objects.clear();
     core::growTo(tables.objects, transfer_.unsentSlots.slots().size());
     for (const uint32_t slot : transfer_.unsentSlots.slots())
-        tables.objects.push_back({slot, scene_.objectAt(slot).remote});
+        tables.objects.push_back({slot, scene_.objectAt(slot).exchangeObject});
     transfer_.neighbours.pool().listChanges(tables.neighbourRanges);
     transfer_.links.listChanges(tables.linkRanges);
     tables.occluders.assign(transfer_.occluders.begin(), transfer_.occluders.end());
     tables.update = {tables.objects,         transfer_.neighbours.pool().all(),
                      tables.neighbourRanges, transfer_.links.all(),
                      tables.linkRanges,      tables.occluders};
-    step.remote = &tables.update;
+    step.exchangeUpdate = &tables.update;
     ++frame_.used;
     frame_.flushed = true;
 }
 
 // After all that the frame reached was touched.
 void ExchangeSystem::commit(bool spreadFound, bool waitersTouched) noexcept {
-    if (frame_.occlusionSent) shield_.unsent = false;
+    if (frame_.occlusionSent) heatOcclusion_.unsent = false;
     if (frame_.latched) {
         for (const uint32_t slot : scene_.moved) scene_.objectAt(slot).exchangeDue = false;
         scene_.moved.clear();
@@ -598,7 +599,7 @@ void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) n
         // A slot may be another's since.
         const auto* by = scene_.objects.findSlot(giver);
         if (now.litTick != 0 && by && (*by)->firstFrame <= readback.frameIndex) {
-            const mesh::Box box = boxOf(object.remote);
+            const mesh::Box box = boxOf(object.exchangeObject);
             float middle[3];
             for (int i = 0; i < 3; ++i)
                 middle[i] = float(double(box.low[i]) + double(box.high[i])) / 2000.0f;
@@ -644,7 +645,7 @@ void ExchangeSystem::capture(ExchangeSnapshot& to) const {
     recordSeen(to.seen);
     captureSlots(occluders_, to.occluders);
     to.latchedOccluders = transfer_.occluders;
-    to.heatOcclusion = shield_.grid;
+    to.heatOcclusion = heatOcclusion_.grid;
 }
 
 void ExchangeSystem::checkSnapshot(const ExchangeSnapshot& from) {
@@ -684,7 +685,7 @@ void ExchangeSystem::restore(ExchangeSnapshot& from) noexcept {
         transfer_.pairs.push_back(pair);
     }
     transfer_.loadedSeen.assign(from.seen.begin(), from.seen.end());
-    shield_.commandSlots.clear();
+    heatOcclusion_.commandSlots.clear();
     adoptOcclusion(from.heatOcclusion);
 }
 
@@ -694,12 +695,12 @@ void ExchangeSystem::restoreObject(Object& object, bool placed) noexcept {
     object.exchangeVersion = placed ? ++transfer_.version : 0;
     if (object.exchangeDue) scene_.moved.push_back(object.slot);
     if (!placed) {
-        object.remote = {};
+        object.exchangeObject = {};
         return;
     }
-    const int wind = object.remote.high.w;
-    if (!object.exchangeDue) object.remote = recordOf(object);
-    object.remote.high.w = wind;
+    const int wind = object.exchangeObject.high.w;
+    if (!object.exchangeDue) object.exchangeObject = recordOf(object);
+    object.exchangeObject.high.w = wind;
     updateReach(object);
 }
 
@@ -712,13 +713,14 @@ std::pmr::vector<Seen> ExchangeSystem::recordedSeen() const {
 // The host's answers about sight hold; the lists of neighbours are built again.
 void ExchangeSystem::shiftOrigin(const double (&by)[3]) noexcept {
     for (auto [i, owned] : scene_.objects.entries())
-        if (owned.exchangeVersion != 0) moveRecord(owned.remote, by);
+        if (owned.exchangeVersion != 0) moveRecord(owned.exchangeObject, by);
     transfer_.rebuild = transfer_.unsent = true;  // its grid is of the places before
     for (gpu::HeatOccluder& occluder : transfer_.occluders) {
         gpu::ivec4* turns[] = {&occluder.turn0, &occluder.turn1, &occluder.turn2};
         for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
     }
-    if (shield_.grid.shape.cells() != 0) shield_.unsent = shield_.unpacked = true;
+    if (heatOcclusion_.grid.shape.cells() != 0)
+        heatOcclusion_.unsent = heatOcclusion_.unpacked = true;
 }
 
 uint64_t ExchangeSystem::neighbourBytes() const noexcept {

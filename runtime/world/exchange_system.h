@@ -1,9 +1,9 @@
 // Heat between objects: poses become integers at fixed ticks, neighbours and contacts are found
 // where something moved, and the backend gets all of it with the step that begins there. Besides,
-// what stands between: occluders and the host's heat shield.
+// what stands between: occluders and the heat-occlusion grid.
 #pragma once
+#include "components/exchange_object.h"
 #include "components/heat_occlusion.h"
-#include "components/remote.h"
 #include "world/command.h"
 #include "world/neighbours.h"
 #include "world/scene.h"
@@ -136,7 +136,7 @@ struct HeatOcclusionState {
     explicit HeatOcclusionState(std::pmr::memory_resource* memory)
         : grid(memory), commandSlots(memory), words(memory), fallen(memory) {}
     components::HeatOcclusion grid;
-    std::pmr::vector<uint32_t> commandSlots;  // that commands of one shield named so far
+    std::pmr::vector<uint32_t> commandSlots;  // that commands of one grid named so far
     std::pmr::vector<uint32_t> words;         // as the backend gets it
     std::pmr::vector<uint8_t> fallen;         // scratch
     gpu::OcclusionUpdate update;
@@ -186,7 +186,8 @@ class ExchangeSystem {
     void eachPlace(const Visit& visit) {
         for (auto [i, occluder] : occluders_.entries())
             visit(occluder.pose.translation, "occluder", i);
-        if (shield_.grid.shape.cells() != 0) visit(shield_.grid.shape.origin, "heat shield", 0u);
+        if (heatOcclusion_.grid.shape.cells() != 0)
+            visit(heatOcclusion_.grid.shape.origin, "heat-occlusion grid", 0u);
     }
     // Throws std::bad_alloc; then nothing has changed.
     [[nodiscard]] std::pmr::vector<Seen> recordedSeen() const;
@@ -200,9 +201,9 @@ class ExchangeSystem {
     void apply(const MoveHeatOccluder& command) {
         moveHeatOccluder(occluders_.findId(command.slot), command.transform.matrix().data());
     }
-    void apply(const SetHeatShield& command);
-    void apply(const SetShieldCells& command);
-    void apply(const AddShieldObject& command);
+    void apply(const SetHeatOcclusion& command);
+    void apply(const SetOcclusionCells& command);
+    void apply(const AddOcclusionObject& command);
     void capture(ExchangeSnapshot& to) const;
     // Throws unless restore takes it; then it needs no memory.
     void checkSnapshot(const ExchangeSnapshot& from);
@@ -212,7 +213,7 @@ class ExchangeSystem {
     [[nodiscard]] const TransferState& transfer() const noexcept { return transfer_; }
     [[nodiscard]] const HeatOccluders& occluders() const noexcept { return occluders_; }
     [[nodiscard]] const components::HeatOcclusion& occlusionGrid() const noexcept {
-        return shield_.grid;
+        return heatOcclusion_.grid;
     }
     [[nodiscard]] bool isOn() const noexcept {
         return transfer_.flags != 0 || transfer_.governed() ||
@@ -250,7 +251,7 @@ class ExchangeSystem {
     void countGoverned(const Object& object, bool more) noexcept;
     void recordSeen(std::pmr::vector<Seen>& to) const;
     void restoreSeen();
-    // shield.cpp
+    // heat_occlusion.cpp
     components::OcclusionObject occlusionObjectOf(uint32_t slot) noexcept;
     void bakeHeatOcclusion(const components::OcclusionGridShape& shape,
                            std::pmr::vector<uint32_t>& slots,
@@ -259,7 +260,7 @@ class ExchangeSystem {
                          std::span<const uint32_t> slots) noexcept;
     void adoptOcclusion(components::HeatOcclusion& made) noexcept;  // takes its cells
     void occlusionChanged() noexcept;
-    void removeFromShield(uint32_t slot) noexcept;
+    void removeOccluderCells(uint32_t slot) noexcept;
     void packHeatOcclusion();
     void planOcclusion(gpu::StepPlan& step, bool awake);
 
@@ -273,7 +274,7 @@ class ExchangeSystem {
     const WindSystem& wind_;
     TransferState transfer_{context_.memory};
     HeatOccluders occluders_{"HeatOccluder", context_.memory};
-    HeatOcclusionState shield_{context_.memory};
+    HeatOcclusionState heatOcclusion_{context_.memory};
     // Of a frame: tables of its updates, of which `used` are planned.
     struct Frame {
         explicit Frame(std::pmr::memory_resource* memory) : tables(memory) {}

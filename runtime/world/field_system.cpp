@@ -245,7 +245,7 @@ void FieldSystem::capture(SlottedList<FieldSnapshot>& to) const {
         made.began = field.began;
         std::copy_n(field.data.position, 3, made.position);
         std::copy_n(field.data.rotation, 4, made.rotation);
-        made.amount = field.data.def.look.amount;
+        made.amount = field.data.def.appearance.amount;
         if (!field.cells) return;
         made.cells = core::Owned<field::FieldCells>::make(context_.memory, context_.memory);
         *made.cells = *field.cells;
@@ -273,7 +273,7 @@ void FieldSystem::restore(SlottedList<FieldSnapshot>& from) noexcept {
         field.began = one.began;
         std::copy_n(one.position, 3, field.data.position);
         std::copy_n(one.rotation, 4, field.data.rotation);
-        field.data.def.look.amount = one.amount;
+        field.data.def.appearance.amount = one.amount;
         field.steps = components::fieldSteps(field.data, context_.clock.tick - field.began);
         field.shownBase = field.steps - ran;
         if (one.cells) static_cast<field::FieldCells&>(*field.cells) = std::move(*one.cells);

@@ -53,7 +53,7 @@ struct FireProfileEntry {
 };
 
 struct FlipbookEntry {
-    core::Owned<flipbook::Flipbook> book;
+    core::Owned<flipbook::Flipbook> data;
     uint32_t users = 0;
     bool emits = false;  // it hides nothing
 };

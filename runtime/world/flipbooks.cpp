@@ -13,7 +13,7 @@ void FlameSystem::sendFlipbooks(uint32_t slot, const flipbook::Flipbook* fresh) 
     uint32_t count = 0;
     for (uint32_t i = 0; i < gpu::kMaxFlipbooks; ++i) {
         const FlipbookEntry* entry = flipbooks_.findSlot(i);
-        all[i] = i == slot ? fresh : entry ? entry->book.get() : nullptr;
+        all[i] = i == slot ? fresh : entry ? entry->data.get() : nullptr;
         count += all[i] != nullptr;
     }
     if (count == 0) {
@@ -30,7 +30,7 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
     components::checkWhole(def.flags, "FwFlipbookDef::flags", 0, 0);
     components::checkWhole(def.preset, "FwFlipbookDef::preset", 0, FW_FLIPBOOK_PRESET_COUNT - 1);
     components::checkWhole(def.reserved, "FwFlipbookDef::reserved", 0, 0);
-    auto book = core::Owned<flipbook::Flipbook>::make(context_.memory, context_.memory);
+    auto flipbook = core::Owned<flipbook::Flipbook>::make(context_.memory, context_.memory);
     if (def.preset == FW_FLIPBOOK_CUSTOM) {
         if (!def.cooked)
             core::refuse(
@@ -40,23 +40,23 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
             core::refuse("FwFlipbookDef::cookedSize is %llu.",
                          static_cast<unsigned long long>(def.cookedSize));
         const auto* bytes = static_cast<const std::byte*>(def.cooked);
-        flipbook::readFlipbook({bytes, size_t(def.cookedSize)}, *book);
+        flipbook::readFlipbook({bytes, size_t(def.cookedSize)}, *flipbook);
     } else {
         if (def.cooked)
             core::refuse("FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
                          def.preset);
-        flipbook::readFlipbook(flipbook::presetFlipbook(def.preset, context_.memory), *book);
+        flipbook::readFlipbook(flipbook::presetFlipbook(def.preset, context_.memory), *flipbook);
     }
     const FwFlipbookId id = flipbooks_.create();
     try {
-        sendFlipbooks(id.index1 - 1, book.get());
+        sendFlipbooks(id.index1 - 1, flipbook.get());
     } catch (...) {
         flipbooks_.destroy(id);
         throw;
     }
     FlipbookEntry& entry = flipbooks_.get(id);
-    entry.emits = flipbook::emitsAlone(*book);
-    entry.book = std::move(book);
+    entry.emits = flipbook::emitsAlone(*flipbook);
+    entry.data = std::move(flipbook);
     return id;
 }
 
@@ -75,7 +75,7 @@ uint32_t FlameSystem::flipbookByte(FwFlipbookId id, const char* name, flipbook::
     if (id.index1 == 0) return 0;
     const FlipbookEntry& entry = flipbooks_.get(id);
     static constexpr const char* kNames[] = {"fire", "smoke", "sparks"};
-    const flipbook::Kind has = entry.book->facts.kind;
+    const flipbook::Kind has = entry.data->facts.kind;
     if (has != kind)
         core::refuse("%s is a flipbook of %s; it must be one of %s.", name, kNames[uint32_t(has)],
                      kNames[uint32_t(kind)]);
@@ -102,17 +102,18 @@ components::EmitterFlipbooks FlameSystem::flipbooksOf(const FwFireEmitterDef& de
             if (const uint32_t b = flipbookByte(id, name, kind)) bytes |= b << (8 * at++);
         return bytes;
     };
-    components::EmitterFlipbooks books;
-    books.fire = pack(def.fireFlipbooks, "FwFireEmitterDef::fireFlipbooks", flipbook::Kind::Fire);
-    books.fireEmits =
-        books.fire != 0 && std::ranges::all_of(def.fireFlipbooks, [&](FwFlipbookId id) {
+    components::EmitterFlipbooks flipbooks;
+    flipbooks.fire =
+        pack(def.fireFlipbooks, "FwFireEmitterDef::fireFlipbooks", flipbook::Kind::Fire);
+    flipbooks.fireEmits =
+        flipbooks.fire != 0 && std::ranges::all_of(def.fireFlipbooks, [&](FwFlipbookId id) {
             return id.index1 == 0 || flipbooks_.get(id).emits;
         });
-    books.other =
+    flipbooks.other =
         pack(def.smokeFlipbooks, "FwFireEmitterDef::smokeFlipbooks", flipbook::Kind::Smoke);
-    books.spark =
+    flipbooks.spark =
         flipbookByte(def.sparkFlipbook, "FwFireEmitterDef::sparkFlipbook", flipbook::Kind::Spark);
-    return books;
+    return flipbooks;
 }
 
 // `by` is 1 or -1.

@@ -1,5 +1,5 @@
 // Jets of fire emitters: rays swept from the holder's side of the nozzle through colliders,
-// occluders, cells of the host's shield and burnable meshes. The first hit is heated when the
+// occluders, cells of the heat-occlusion grid and burnable meshes. The first hit is heated when the
 // stream has flown there, nothing behind it. Jets depend on the host's numbers alone and become
 // events, the same on every backend. Particles use the same hits.
 #include "mesh/bake.h"
@@ -87,7 +87,9 @@ bool within(const float from[3], const float way[3], const float low[3], const f
 }
 
 // Half the angle that a jet takes, rad.
-float halfAngle(const FireEmitter& emitter) noexcept { return emitter.look.cone * 1.8f + 0.02f; }
+float halfAngle(const FireEmitter& emitter) noexcept {
+    return emitter.appearance.cone * 1.8f + 0.02f;
+}
 
 void jetRays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
     const vec3 along = volume::vecOf(emitter.direction);
@@ -241,7 +243,8 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
 void EmitterSystem::sweepJets(FireEmitter& emitter) noexcept {
     if (emitter.swept == sweeps_) return;
     emitter.swept = sweeps_;
-    listJetTargets(emitter.position, std::max(emitter.def.behind, kPastReach * emitter.look.reach));
+    listJetTargets(emitter.position,
+                   std::max(emitter.def.behind, kPastReach * emitter.appearance.reach));
     const float behind = emitter.def.behind;
     float holder[3];
     for (int i = 0; i < 3; ++i) holder[i] = emitter.position[i] - emitter.direction[i] * behind;
@@ -254,26 +257,27 @@ void EmitterSystem::sweepJets(FireEmitter& emitter) noexcept {
     float ways[kRays][3];
     jetRays(emitter, ways);
     for (uint32_t i = 0; i < kRays; ++i)
-        (void)sweepJet(emitter.position, ways[i], kPastReach * emitter.look.reach, emitter.hits[i]);
+        (void)sweepJet(emitter.position, ways[i], kPastReach * emitter.appearance.reach,
+                       emitter.hits[i]);
 }
 
 // For the particles of a frame, and for the emitter's state.
 void EmitterSystem::updateJetObstacles(FireEmitter& emitter, double now) noexcept {
     sweepJets(emitter);
     emitter.blockedRays = 0;
-    emitter.clearDistance = kPastReach * emitter.look.reach;
+    emitter.clearDistance = kPastReach * emitter.appearance.reach;
     for (uint32_t i = 0; i < kRays; ++i) {
         JetHit hit = emitter.hits[i];
         if (const components::JetHole& hole = emitter.holes[i];
             hit.met && hole.object.index1 != 0 && same(hole.object, hit.object) &&
             hole.texel == hit.texel)
             passHole(emitter, hit);
-        components::JetObstacle shield;
-        shield.met = hit.met;
-        std::copy_n(hit.place, 3, shield.place);
-        std::copy_n(hit.normal, 3, shield.normal);
-        shield.radius = 0.10f + 0.6f * hit.distance * halfAngle(emitter);
-        components::setJetObstacle(emitter, i, shield, now);
+        components::JetObstacle occluder;
+        occluder.met = hit.met;
+        std::copy_n(hit.place, 3, occluder.place);
+        std::copy_n(hit.normal, 3, occluder.normal);
+        occluder.radius = 0.10f + 0.6f * hit.distance * halfAngle(emitter);
+        components::setJetObstacle(emitter, i, occluder, now);
         emitter.blockedRays += hit.met ? 1u : 0u;
         if (hit.met) emitter.clearDistance = std::min(emitter.clearDistance, hit.distance);
     }
@@ -304,7 +308,7 @@ void EmitterSystem::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
     std::copy_n(hit.place, 3, start);
     for (int i = 0; i < 3; ++i)
         way[i] = passed > 0 ? (hit.place[i] - emitter.position[i]) / passed : emitter.direction[i];
-    const float left = std::max(kPastReach * emitter.look.reach - passed, 0.0f);
+    const float left = std::max(kPastReach * emitter.appearance.reach - passed, 0.0f);
     listJetTargets(start, left);
     hit.distance = passed + sweepJet(start, way, left, hit, &gate);
 }
@@ -367,8 +371,8 @@ void EmitterSystem::launchJet(const FireEmitter& emitter, JetParcel& parcel,
     parcel.sticks = uint64_t(double(parcel.power) * double(emitter.def.stick));
     std::copy_n(emitter.position, 3, parcel.from);
     parcel.wide = halfAngle(emitter);
-    parcel.most = millimetres(kPastReach * emitter.look.reach);
-    parcel.flight = components::jetFlight(emitter.look);
+    parcel.most = millimetres(kPastReach * emitter.appearance.reach);
+    parcel.flight = components::jetFlight(emitter.appearance);
     float ways[kRays][3];
     jetRays(emitter, ways);
     for (uint32_t i = 0; i < kRays; ++i) {

@@ -139,7 +139,8 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
     checkCount(saved.events.size(), kMaxSavedEvents, "events");
     check.require(components::plausible(saved.wind.gusts, tick), "state of gusts");
     for (const components::OcclusionCell& cell : saved.exchange.heatOcclusion.baked)
-        check.texel("a cell of the shield", cell.what & gpu::kOcclusionSlotMask, cell.texel);
+        check.texel("a cell of the heat-occlusion grid", cell.what & gpu::kOcclusionSlotMask,
+                    cell.texel);
 }
 
 BurnRecords PersistenceSystem::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
@@ -178,7 +179,7 @@ void PersistenceSystem::readObjects(const Snapshot& saved, RestoredObjects& out)
             gpu::RestoredObject& one = out.images.emplace_back();
             one.image.object = from.slot;
             one.image.counters.air = from.counters.air;
-            one.rests = true;
+            one.sleeps = true;
         }
         if (!from.touched) continue;
         const Object& object = scene_.objectAt(from.slot);

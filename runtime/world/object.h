@@ -1,7 +1,7 @@
 // Records of meshes, images and burnable meshes that the systems of a world share.
 #pragma once
 #include "components/burnable_mesh.h"
-#include "components/remote.h"
+#include "components/exchange_object.h"
 #include "core/owned.h"
 #include "gpu/backend.h"
 #include "mesh/burn_domain.h"
@@ -83,10 +83,10 @@ struct Breaks : BreakState {
     bool hangs = false;           // from its pins; else it stands
     std::array<FwPin, 8> pins{};  // object space
     uint32_t pinCount = 0;
-    std::pmr::vector<bool> lost;       // by texel: nothing held it at the last look
+    std::pmr::vector<bool> lost;       // by texel: nothing held it at the last check
     core::Owned<mesh::Pieces> pieces;  // of an object with cut-outs; null: its mesh's
-    std::array<uint64_t, 8> looks{};   // frames that read its state back, oldest first
-    uint32_t lookCount = 0;
+    std::array<uint64_t, 8> checks{};  // frames that read its state back, oldest first
+    uint32_t checkCount = 0;
 };
 
 // A frame whose readback is on its way: the count of steps and sleep follow from it.
@@ -155,8 +155,8 @@ struct ObjectState {
     uint32_t zoneWind = 0;              // that zones add where it is, packed
     bool touched = false;               // an event addressed it: it filters wind and latches
     bool carried = false;               // from another: its energy so far is none of its own power
-    bool exchangeDue = false;      // pose or def changed since its latch: it is in Scene::moved
-    gpu::ExchangeObject remote{};  // as other objects see it, latched at each exchange
+    bool exchangeDue = false;  // pose or def changed since its latch: it is in Scene::moved
+    gpu::ExchangeObject exchangeObject{};  // as other objects see it, latched at each exchange
     BurnLifecycle lifecycle;
     gpu::ObjectCounters counters{};  // as of the last readback
 };

@@ -157,7 +157,7 @@ void PersistenceSystem::captureObject(Object& object, ObjectSnapshot& to) noexce
     if (object.play.burn1 != 0)
         to.burnHash = (*world_.burn_.state().burns.at(object.play.burn1 - 1))->hash;
     to.placed = object.exchangeVersion != 0;
-    to.remote.neighbourFirst = to.remote.neighbourCount = 0;
+    to.exchangeObject.neighbourFirst = to.exchangeObject.neighbourCount = 0;
     to.filters = object.latch.filters;
     to.latched = object.latch.pose;
 }

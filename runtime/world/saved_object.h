@@ -1,6 +1,6 @@
 // A burnable mesh of a save: the state that the world keeps, and the image of its texels and tiles.
 #pragma once
-#include "components/remote.h"
+#include "components/exchange_object.h"
 #include "save/archive.h"
 #include "world/object.h"
 
@@ -25,8 +25,8 @@ struct ObjectSnapshot : ObjectState {
         a.range("burnable mesh's place", pose.translation, -1e6, 1e6);
         if (play.burn1 != 0) a(burnHash);
         // A latched record follows from the pose, but for the wind that it was latched in.
-        if (placed && exchangeDue) a(remote);
-        if (placed && !exchangeDue) a(remote.high.w);
+        if (placed && exchangeDue) a(exchangeObject);
+        if (placed && !exchangeDue) a(exchangeObject.high.w);
         a(touched, carried);
         if (!touched) {
             a(counters.air);

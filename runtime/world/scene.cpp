@@ -233,7 +233,8 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
         if (!components::burns(object, i)) continue;
         wall = std::max(wall, object.materials[i].thickness);
-        holes[i] = components::holesOf(components::materialLook(object.materials[i].appearance));
+        holes[i] =
+            components::holesOf(components::materialAppearance(object.materials[i].appearance));
     }
     if (wall > 0) options.wall = std::clamp(wall, 1e-4f, 0.5f);
     const mesh::RefineModel model = mesh::bakeRefine(*mesh.domain, options, context_.memory);
@@ -254,7 +255,7 @@ bool Scene::innerSkin(MeshEntry& mesh, uint32_t slot, const components::Burnable
         float wall = 0;
         for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
             if (components::burns(object, i) &&
-                components::materialLook(object.materials[i].appearance).holeTime > 0)
+                components::materialAppearance(object.materials[i].appearance).holeTime > 0)
                 wall = std::max(wall, object.materials[i].thickness);
         if (!(wall > 0)) return false;
         wall = std::clamp(wall, 1e-4f, 0.5f);

@@ -66,7 +66,7 @@ gpu::StepPlan BurnSystem::planStep(uint32_t now, size_t& nextDue, bool awake) {
     planGates(due, firstEvent);
     plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
     exchange_.plan(plan, now, awake);
-    planLatches(now, firstEvent, plan.remote != nullptr);
+    planLatches(now, firstEvent, plan.exchangeUpdate != nullptr);
     return plan;
 }
 
@@ -125,9 +125,9 @@ void BurnSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) {
     planBreaks(time.after.tick);
     reserveStimuli();
     // Nothing listed, nothing new: time passes without the device.
-    const bool rests = state_.idle && rooms_.isSettled(rooms_.state().stirred) &&
-                       frame_.events.empty() && frame_.updates.empty() && !keepsAwake();
-    if (!rests) plan.steps = frame_.steps;
+    const bool isSleeping = state_.idle && rooms_.isSettled(rooms_.state().stirred) &&
+                            frame_.events.empty() && frame_.updates.empty() && !keepsAwake();
+    if (!isSleeping) plan.steps = frame_.steps;
 }
 
 // By step, object and texel. An event of all texels stays one only where no other event of the step

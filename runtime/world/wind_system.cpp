@@ -125,7 +125,7 @@ void WindSystem::updateObject(Object& object) noexcept {
     const uint32_t wind = localWindOf(object, context_.clock.tick);
     // In gusts others hear of it with each exchange; after the last one, once more.
     const bool heard =
-        hasGusts() || object.exchangeVersion == 0 || int(wind) == object.remote.high.w;
+        hasGusts() || object.exchangeVersion == 0 || int(wind) == object.exchangeObject.high.w;
     if (wind == object.zoneWind && heard) return;
     state_.kept |= wind != 0;
     object.zoneWind = wind;

@@ -31,13 +31,13 @@ shared uint threadLow[8u * kBlock];
 shared uint threadHigh[8u * kBlock];
 shared float threadWatts[8u * kBlock];
 
-const uint kItemDozes = 64u, kItemRests = 128u, kItemReal = 256u;
+const uint kItemDozes = 64u, kItemSleeps = 128u, kItemReal = 256u;
 const uint kItemKindShift = 9u;
 
 struct Row {
     uint todo;    // due texels, by bits
     uint dozes;
-    uint rests;
+    uint sleeps;
     uint waits;   // work of the others
 };
 Row rowWork(TileRef tile, uint row, uint flux, uint turn) {
@@ -58,7 +58,7 @@ Row rowWork(TileRef tile, uint row, uint flux, uint turn) {
             uint bit = 1u << uint(2 * i + k);
             r.todo |= (work & turn) != 0u ? bit : 0u;
             r.dozes |= work == kWorkColdWater ? bit : 0u;
-            r.rests |= work == kWorkWarm ? bit : 0u;
+            r.sleeps |= work == kWorkWarm ? bit : 0u;
             r.waits |= (work & turn) == 0u ? work : 0u;
         }
     }
@@ -78,7 +78,7 @@ void listRow(TileRef tile, uint thread, Row r) {
         uint flags = texels[texelAt + i].y >> 16u;
         uint kind = flags & (kMaterialsPerObject - 1u);
         items[at] = row * 8u + i + ((r.dozes & bit) != 0u ? kItemDozes : 0u) +
-                    ((r.rests & bit) != 0u ? kItemRests : 0u) +
+                    ((r.sleeps & bit) != 0u ? kItemSleeps : 0u) +
                     ((flags & kTexelReal) != 0u ? kItemReal : 0u) + (kind << kItemKindShift);
         atomicOr(kinds[thread >> 3u], 1u << kind);
         ++at;
@@ -126,7 +126,7 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
             if ((item & kItemDozes) != 0u)
                 now = dryColdWater(x, own, before, chance);
             else
-                now = heatTexelStep(x, heatMaterialOver(own, (item & kItemRests) != 0u, comes.x),
+                now = heatTexelStep(x, heatMaterialOver(own, (item & kItemSleeps) != 0u, comes.x),
                                     before, push.now, comes.x, comes.y != 0u, air, chance, units);
             bool real = (item & kItemReal) != 0u && item >> kItemKindShift == kind;
             bool lights = real && isSource(now) && !isSource(before);

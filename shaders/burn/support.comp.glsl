@@ -11,7 +11,7 @@ FW_PUSH(StepPush)
 #include "lib/tile.glsl"
 
 const uint kFar = 1023u;      // largest distance
-const uint kLookEvery = 32u;  // frames, about, between scans of a tile's texels
+const uint kCheckEvery = 32u;  // frames, about, between scans of a tile's texels
 const float kFallTime = 1.1;  // s from the first flake to the last
 
 uint distanceOf(uint flag) { return flag >> kTileDistanceShift; }
@@ -25,7 +25,7 @@ uint sideTexel(uint corner, uint width, uint side, uint i, bool beside) {
 }
 
 // Facts of the texels: spent, on the ground, connected sides, material.
-uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
+uint breakFacts(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
     uint corner = (tile.y * bases.w + tile.x) * 8u;
     uvec4 up = materials[object * kMaterialsPerObject].upCeiling;
     uint facts = kTileSpent;
@@ -81,8 +81,8 @@ uint supported(uint worldTile, TileRef ref) {
     uvec2 tile = uvec2(ref.local % sizes.z, ref.local / sizes.z);
     bool falls = (flag & kTileFalling) != 0u;
     // Eight tiles at once: the width of a software device.
-    bool looks = !falls && hash32((worldTile >> 3u) + (push.now >> 7u)) % kLookEvery == 0u;
-    if (looks) flag = (flag & ~kTileFacts) | lookAt(object, bases, sizes, tile);
+    bool checks = !falls && hash32((worldTile >> 3u) + (push.now >> 7u)) % kCheckEvery == 0u;
+    if (checks) flag = (flag & ~kTileFacts) | breakFacts(object, bases, sizes, tile);
     uint holeTicks = materials[materialOf(object, flag)].holeTicks;
     bool spent = (flag & kTileSpent) != 0u;
     bool solid = !falls && holeTicks != 0u && (!spent || push.now - last < holeTicks);

@@ -23,7 +23,7 @@ vec3 flamePlaceOf(BurnTile tile, float side) {
 // Wood flames as long as it lasts, but most heat is released near the front. age: ticks since
 // ignition; share: of the duration.
 float flameFade(BurnMaterial material, float age, float share) {
-    float lasting = share * max(6.0 * appearances[material.look].charTime, 8.0);
+    float lasting = share * max(6.0 * appearances[material.appearance].charTime, 8.0);
     return 0.04 + 0.96 * exp(-age * (1.0 / 4096.0) * material.timeScale / lasting);
 }
 float flameFade(BurnTile tile) {
@@ -35,7 +35,7 @@ uint clusterKey(ivec3 cell, float side) {
     h = hash32(h ^ uint(cell.y) * 19349663u);
     return max(hash32(h ^ uint(cell.z) * 83492791u), 1u);
 }
-#define clusterOf(slot, word) clusters[kLightCellHeader + (slot) * kLightCellWords + (word)]
+#define clusterOf(slot, word) clusters[kClusterHeader + (slot) * kClusterWords + (word)]
 
 const uint kClusterProbes = 24u;
 const float kFlameCover = 3.8;  // overlapping quads over a burning area
@@ -48,7 +48,7 @@ float flameLength(float watts, float area) {
 // W and m^2 that flame in the cluster of this key.
 vec2 clusterFire(uint key) {
     for (uint i = 0u; i < kClusterProbes; ++i) {
-        uint slot = (key + i) % kLightCells, there = clusterOf(slot, 0u);
+        uint slot = (key + i) % kClusterSlots, there = clusterOf(slot, 0u);
         if (there == key) return vec2(clusterOf(slot, 1u), float(clusterOf(slot, 5u)) * 1e-5);
         if (there == 0u) break;
     }

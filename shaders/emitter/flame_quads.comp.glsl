@@ -5,7 +5,7 @@
 #include "lib/view.glsl"
 #include "shared/particle.h"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)
-FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
+FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(CLUSTERS)
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 #include "emitter/clusters.glsl"
 #include "emitter/flipbooks.glsl"
@@ -59,13 +59,13 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (age < ago) continue;  // it caught later
         uint material =
             tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
-        MaterialAppearance look = appearances[materials[material].look];
+        MaterialAppearance appearance = appearances[materials[material].appearance];
         float lasts = materials[material].flameTicks == kNoneTexel
                           ? 1e9
                           : float(materials[material].flameTicks);
         // Thin materials burn at hole edges while the hole grows.
-        if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 /
+        if (appearance.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
+            lasts = min(lasts, (appearance.holeTime - 0.5 * appearance.holeVariation) * 4096.0 /
                                    materials[material].timeScale);
         if (age >= lasts || age - ago >= 0.8 * lasts) continue;
         ++met;
@@ -118,9 +118,10 @@ void main() {
 
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
-            MaterialAppearance mainLook =
-                appearances[materials[tile.object * kMaterialsPerObject].look];
-            float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
+            MaterialAppearance mainAppearance =
+                appearances[materials[tile.object * kMaterialsPerObject].appearance];
+            float odds = smoke ? min(0.10 * quads * mainAppearance.smoke, 0.5) :
+                min(quads / 3.0, 1.0);
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
             float period =
@@ -138,7 +139,7 @@ void main() {
                              smoothstep(0.0, 1.0, foot.left);
             if (strength < 0.02) continue;
             BurnObject object = objects[tile.object];
-            MaterialAppearance look = appearances[materials[foot.material].look];
+            MaterialAppearance appearance = appearances[materials[foot.material].appearance];
             vec3 rest = restOf(tile.object, texels[object.texelBase + foot.texel]);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             moveWithSkin(tile.object, foot.texel, rest, n);
@@ -148,7 +149,7 @@ void main() {
             vec3 right = particleAcross(normal + up * 1e-4), ahead = cross(normal, right);
             float r1 = hashUnit(g), r2 = hashUnit(g + 1u), r3 = hashUnit(g + 2u),
                   r4 = hashUnit(g + 3u);
-            float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);
+            float len = 0.85 * likely * (appearance.flame > 0.0 ? appearance.flame : 1.0);
             FlameQuad quad;
             float rise = 1.0 + 2.5 * sqrt(len);  // m/s
             if (!smoke) {
@@ -176,7 +177,8 @@ void main() {
                           drift * (0.75 * age) + right * ((r2 - 0.5) * 0.5 * len * a);
                 quad.baseHeight = vec4(at - up * size, 2.0 * size);
                 quad.axisWidth = vec4(up, size);
-                quad.opacity = strength * 0.42 * min(look.smoke, 1.6) * smoothstep(0.0, 0.30, a) *
+                quad.opacity = strength * 0.42 * min(appearance.smoke, 1.6) *
+                               smoothstep(0.0, 0.30, a) *
                                (1.0 - smoothstep(0.35, 1.0, a));
                 quad.phase = 0.10 * age + 5.0 * r4;
                 // Lit by the fire below from birth.

@@ -5,7 +5,7 @@
 #include "emitter/flames.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
+layout(set = 2, binding = 0) uniform sampler2DArray appearanceTextures;
 
 #ifdef FW_FLIPBOOKS
 // If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
@@ -39,7 +39,7 @@ const uint kOnlyFlipbooks = 0u;
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"
-#include "lib/look_noise.glsl"
+#include "lib/appearance_noise.glsl"
 
 const float kFlameWhite = 2.4;  // host units of thin soot at 1600 K
 const float kNoiseBall = 0.9;   // of that: a jet of noise is as bright as one of flipbooks
@@ -111,10 +111,10 @@ void main() {
     vec2 ahead = kSunStep * vSun, scroll = vec2(0.0, slow * phase);
     float aheadNoise = 0.5;
     if (kOnlyFlipbooks == 0u) {
-        n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
+        n1 = textureLod(appearanceTextures, vec3(p - scroll, kLayerNoise), lod);
         vec2 sunward =
             rotate(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), rotation) * 0.15 + seed;
-        aheadNoise = textureLod(lookTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
+        aheadNoise = textureLod(appearanceTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
     }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
@@ -122,7 +122,8 @@ void main() {
     vec2 q =
         (smoke ? rotate(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
     if (kOnlyFlipbooks == 0u)
-        n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
+        n2 = textureLod(appearanceTextures, vec3(q, kLayerNoise),
+                        lod - (tongue || smoke ? 0.0 : 1.0));
 
     vec3 color;
     float alpha;

@@ -5,7 +5,7 @@
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(COUNTERS) FW_READ(BURN_TILES) FW_READ(APPEARANCES)
-FW_READ_WRITE(LIGHT_CELLS) FW_WRITE(DRAW_ARGS) FW_WRITE(LIGHTS) FW_PUSH(StepPush)
+FW_READ_WRITE(CLUSTERS) FW_WRITE(DRAW_ARGS) FW_WRITE(LIGHTS) FW_PUSH(StepPush)
 #include "emitter/clusters.glsl"
 
 const uint kMost = 1024u;      // competing clusters
@@ -27,7 +27,7 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     uint key = clusterKey(cell, side);
     uint weight = max(uint(tile.normalPower.w + 0.5), 1u);  // W
     for (uint i = 0u; i < kClusterProbes; ++i) {
-        uint slot = (key + i) % kLightCells;
+        uint slot = (key + i) % kClusterSlots;
         uint there = atomicCompSwap(clusterOf(slot, 0u), 0u, key);
         if (there != 0u && there != key) continue;
         atomicAdd(clusterOf(slot, 1u), weight);
@@ -76,7 +76,7 @@ void give(uint slot, uint light, uvec3 what) {
 void main() {
     uint me = gl_LocalInvocationID.x;
     uint count = counters[kRowBurn + push.burnParity].runCount;
-    for (uint i = me; i < kLightCellHeader + kLightCells * kLightCellWords; i += 128u)
+    for (uint i = me; i < kClusterHeader + kClusterSlots * kClusterWords; i += 128u)
         clusters[i] = 0u;
     if (me == 0u) {
         candidates = homelessPower = homelessRelease = 0u;
@@ -95,7 +95,7 @@ void main() {
         addTo(tile, flamePlaceOf(tile, large), large, 1u, release);
     }
     syncBuffers();
-    for (uint slot = me; slot < kLightCells; slot += 128u) {
+    for (uint slot = me; slot < kClusterSlots; slot += 128u) {
         if (keyOf(slot) == 0u || clusterOf(slot, 10u) != 0u) continue;
         uint at = atomicAdd(candidates, 1u);
         if (at >= kMost) {

@@ -7,12 +7,12 @@
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(constant_id = 2) const uint kVariant = 0u;  // 0: only emits, 1: absorbs, 2: also refracts
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
-layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
+layout(set = 2, binding = 0) uniform sampler2DArray appearanceTextures;
 
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"
-#include "lib/look_noise.glsl"
+#include "lib/appearance_noise.glsl"
 #ifdef FW_SOFT
 #include "lib/soft_depth.glsl"
 #endif
@@ -72,7 +72,7 @@ vec4 carried(vec2 cell, vec2 motion, float phase, float number, float lod) {
     vec2 moved = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
     uvec3 of = uvec3(uint(number), uint(vSize.w), 3u);
     vec2 jump = vec2(hash(of), hash(of + 4u));
-    return textureLod(lookTextures,
+    return textureLod(appearanceTextures,
                       vec3((cell - moved) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
 }
 

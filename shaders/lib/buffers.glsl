@@ -119,7 +119,7 @@ const uint kRunBits = 3u;
 #define FW_BUFFER_APPEARANCES(access) \
     FW_BUFFER(APPEARANCES, access, MaterialAppearance, appearances)
 #define FW_BUFFER_LIGHTS(access) FW_BUFFER(LIGHTS, access, BurnLight, lights)
-#define FW_BUFFER_LIGHT_CELLS(access) FW_BUFFER(LIGHT_CELLS, access, uint, clusters)
+#define FW_BUFFER_CLUSTERS(access) FW_BUFFER(CLUSTERS, access, uint, clusters)
 #define FW_BUFFER_FLAMES(access) FW_BUFFER(FLAMES, access, FlameQuad, flameQuad)
 #define FW_BUFFER_DRAW_ARGS(access) FW_BUFFER(DRAW_ARGS, access, uint, drawArgs)
 #define FW_BUFFER_FLIPBOOKS(access) FW_BUFFER(FLIPBOOKS, access, uint, flipbooks)

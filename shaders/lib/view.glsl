@@ -1,5 +1,5 @@
 // The frame's view.
 #include "lib/buffers.glsl"
 #include "shared/burn.h"
-#include "shared/look.h"
+#include "shared/appearance.h"
 FW_UNIFORM(VIEW, ViewParams, view)

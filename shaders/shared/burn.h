@@ -34,7 +34,7 @@
 #define FW_BIND_ANSWERS 27  // ProbeAnswer[]: one per probe
 #define FW_BIND_EXTENSION_TILES 28  // 768 bytes a tile of objects that an extension works on
 #define FW_BIND_LIGHTS 29  // BurnLight[]
-#define FW_BIND_LIGHT_CELLS 30  // uint[]: hash grid of burning cells
+#define FW_BIND_CLUSTERS 30  // uint[]: hash grid of burning cells
 #define FW_BIND_FLAMES 31  // FlameQuad[]
 #define FW_BIND_DRAW_ARGS 32  // uint[]: indirect draw of the flames, their order; see kFlameOrder
 #define FW_BIND_VIEW 33  // uniform ViewParams
@@ -214,7 +214,7 @@ struct BurnObject {   // offsets and constants of one object
     uint width;       // texels, a multiple of 8
     uint worldTileBase;  // into tileState; a world tile id = worldTileBase + local tile
     uint linkBase;    // into links, in records
-    uint dependentBase;  // into readers
+    uint dependentBase;  // into dependents
     uint flags;
     uint tileBase;    // into tiles (per mesh)
     uint height;      // texels
@@ -244,7 +244,7 @@ struct BurnMaterial { // integers of the spread law of one material on one objec
     uint breadthMax;  // Q8, largest back/head slowness ratio
     uint burnTicks;   // ticks that a texel flames; kNoneTexel: unlimited
     uint ceiling;     // Q8 speed-up of downward-facing surfaces
-    uint look;        // row of the appearance table
+    uint appearance;        // row of the appearance table
     int driveX;       // Q10, object space: windGain * wind + upGain * up
     int driveY;
     int driveZ;

@@ -98,7 +98,7 @@ FW_SIZE(DeviceParticle, 256)
 
 // Constant, per drawn vertex: how its normal follows; device: quad by quad.
 struct DeformEmbedding {
-    uint node;            // vertex that stores its particle's state
+    uint particle;            // vertex that stores its particle's state
     uint normal;          // at rest, signed 11:11:10
     uint reserved0; uint reserved1;
     // Chain of vertices around it, padded with the last: triangles that share the normal.
@@ -116,7 +116,7 @@ struct ShownVertex {      // drawn instead of mesh::RenderVertex's position and 
     float lost; float kept;
     float behind;                // s of appearance time for which the opposite wall has burnt
     float reserved[3];
-    float lead;  // s of appearance time: burn-through offset, holes come earlier by it
+    float burnThrough;  // s of appearance time: burn-through offset, holes come earlier by it
 };
 FW_SIZE(ShownVertex, 48)
 
@@ -134,7 +134,7 @@ FW_SIZE(DeformMaterial, 32)
 
 struct DeformObject {     // per object slot
     uint nodeBase;        // into the nodes
-    uint nodeCount;
+    uint particleCount;
     uint embeddingBase;        // into the embeddings
     uint vertexCount;
     uint shownBase;       // into the shown vertices

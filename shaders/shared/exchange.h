@@ -168,7 +168,7 @@ FW_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) {
 FW_FN ivec3 tileMiddle(FW_IN(ExchangeTile) t) {
     return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
 }
-FW_FN uint tileCell(FW_IN(ExchangeTile) t) { return (t.z >> 16u) & 0xFFu; }
+FW_FN uint tileCluster(FW_IN(ExchangeTile) t) { return (t.z >> 16u) & 0xFFu; }
 FW_FN uint tileMaterial(FW_IN(ExchangeTile) t) { return t.z >> 24u; }
 
 FW_FN bool isWithinExchangeRange(ivec3 d) {

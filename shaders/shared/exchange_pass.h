@@ -28,7 +28,7 @@ void sumTile(uint i) {
     if ((exchangeObjects[object].flags & kExchangeLive) == 0u) return;
     uint flaming = burnTiles[i].texels;
     FW_IN(ExchangeTile) tile = exchangeTileOf(object, burnTiles[i].tile);
-    uint material = tileMaterial(tile), cell = tileCell(tile);
+    uint material = tileMaterial(tile), cell = tileCluster(tile);
     uint power = material < 4u ? exchangeObjects[object].power0[material & 3u]
                                : exchangeObjects[object].power1[material & 3u];
     ivec3 middle = tileMiddle(tile);

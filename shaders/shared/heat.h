@@ -442,8 +442,8 @@ FW_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, u
 
 // The material over all steps of a sleep interval at once; a burning texel takes one step.
 FW_FN uint sleepShift(uint flux) { return flux < kLongSleepFlux ? kLongSleepShift : kSleepShift; }
-FW_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
-    uint shift = rests ? sleepShift(flux) : 0u;
+FW_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool sleeps, uint flux) {
+    uint shift = sleeps ? sleepShift(flux) : 0u;
     HeatMaterial long_ = m;
     long_.inertia = m.inertia == 0u ? 0u : maxU(m.inertia >> shift, 1u);
     long_.minCapacity = m.minCapacity >> shift;

@@ -17,7 +17,7 @@ FW_CONST uint kTileSparks = 8u;       // slots of a burning tile
 FW_CONST uint kMaxTileSparks = 1024u; // quads of all burning tiles of a source
 FW_CONST uint kSparkGroups = 4u;      // of 64 threads, per source
 FW_CONST uint kSparkLegs = 3u;        // a flight and two bounces
-FW_CONST uint kSparkLooks = 8u;       // collision samples per leg
+FW_CONST uint kSparkAppearances = 8u;       // collision samples per leg
 FW_CONST uint kSparkHalvings = 8u;    // bisections of a hit
 FW_CONST float kSparkShutter = 0.02f; // s of motion shown as a streak
 FW_CONST float kSparkClear = 0.005f;  // m: least distance to surfaces
@@ -178,8 +178,9 @@ FW_FN float sparkClearance(SparkBounds b, vec3 p) {
 FW_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, float most) {
     float low = most, high = most;
     bool met = false;
-    for (uint i = 0u; i < kSparkLooks; ++i) {
-        float before = float(i) / float(kSparkLooks), t = float(i + 1u) / float(kSparkLooks);
+    for (uint i = 0u; i < kSparkAppearances; ++i) {
+        float before = float(i) / float(kSparkAppearances);
+        float t = float(i + 1u) / float(kSparkAppearances);
         before *= before * most;
         t *= t * most;
         bool meets = !met && sparkClearance(b, sparkArc(leg, up, tau, t)) < kSparkClear;

@@ -264,9 +264,9 @@ FW_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float 
 
 // size: m, footprint of the sample (the larger of step and pixel); finer detail fades.
 FW_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
-    FlameLookup look;
-    look.lit = 0.0f; look.rho = 2.0f; look.y = 2.0f;
-    look.erode = 0.0f; look.sheet = 1.0f; look.guard = 0.0f;
+    FlameLookup lookup;
+    lookup.lit = 0.0f; lookup.rho = 2.0f; lookup.y = 2.0f;
+    lookup.erode = 0.0f; lookup.sheet = 1.0f; lookup.guard = 0.0f;
     float diameter = f.low.w;
     float y = at.s / f.high.w;
     float tau = flameTau(at.s, f.tauStart, f.tauFree);
@@ -275,7 +275,7 @@ FW_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     float swell = 8.0f * turn * (2.0f * abs(turn) - 1.0f);  // a sine, nearly
     float radius = at.radius * (1.0f + f.puff * smoothstep(0.0f, 0.5f, y) * swell);
     float rim = length(at.p) / max(radius, 1e-6f);
-    if (y < 0.0f || y > kFlameTop || rim > kFlameReach || radius < 1e-5f) return look;
+    if (y < 0.0f || y > kFlameTop || rim > kFlameReach || radius < 1e-5f) return lookup;
     float rise = smoothstep(0.0f, 1.0f, y);
     float grow = smoothstep(0.02f, 0.9f, y);
     float z = f.speed * tau / f.stretch;
@@ -311,22 +311,23 @@ FW_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
         o += 1u;
     } while (o < f.octaves);
     // The foot stays lit for any noise.
-    look.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
-    look.rho = length(p) * narrow / radius * (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
-    look.erode = f.erode * smoothstep(0.2f, 1.2f, y);
+    lookup.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
+    lookup.rho = length(p) * narrow / radius *
+        (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
+    lookup.erode = f.erode * smoothstep(0.2f, 1.2f, y);
     // Soot lies in sheets where the advected noise is 0, the crests of the displacement.
     float thin = 0.7f * size / (f.lambda * narrow);
     float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
     float filament =
         f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
     if (sheet > 0.0f) filament = max(filament, f.tipFill * smoothstep(0.3f, 0.9f, y));
-    look.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
+    lookup.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
                      f.filament * smoothstep(0.0f, f.filamentHeight, y));
     // Prevents islands beside the foot and an edge at the tube's end.
-    look.guard = (1.0f - smoothstep(0.0f, 0.30f, rim - mix(0.90f, 0.75f, rise))) *
+    lookup.guard = (1.0f - smoothstep(0.0f, 0.30f, rim - mix(0.90f, 0.75f, rise))) *
                  (1.0f - smoothstep(kFlameTop - 0.3f, kFlameTop, y));
-    look.lit = look.y < 1.0f && look.rho < kProfileReach && look.guard > 0.0f ? 1.0f : 0.0f;
-    return look;
+    lookup.lit = lookup.y < 1.0f && lookup.rho < kProfileReach && lookup.guard > 0.0f ? 1.0f : 0.0f;
+    return lookup;
 }
 
 FW_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
@@ -342,16 +343,19 @@ FW_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
     return radiance;
 }
 
-// profile: sample of the fire profile at look.rho, look.y: x in 1000 K, 0 without hot gas; y soot.
-FW_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profile) {
+// profile: sample of the fire profile at lookup.rho, lookup.y: x in 1000 K, 0 without hot gas; y
+// soot.
+FW_FN FlameMedium flameMedium(FlameRecord f, FlameLookup lookup, vec2 profile) {
     FlameMedium m;
-    float soot = max(0.0f, profile.y - look.erode) / (1.0f - look.erode) * look.sheet * look.guard;
+    float soot = max(0.0f, profile.y - lookup.erode) / (1.0f - lookup.erode) * lookup.sheet *
+        lookup.guard;
     m.soot = f.soot * f.air.w * soot;
     m.smoke = 0.0f; m.smokeShade = 0.5f;
     m.emission = m.soot * flameRadiance(f, 1000.0f * profile.x);
-    float foot = smoothstep(0.0f, 0.02f, look.y) *
-                 (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
-    float gas = clamp(profile.x, 0.0f, 1.0f) * foot * look.guard * (1.0f - 0.8f * min(soot, 1.0f));
+    float foot = smoothstep(0.0f, 0.02f, lookup.y) *
+                 (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, lookup.y));
+    float gas = clamp(profile.x, 0.0f, 1.0f) * foot * lookup.guard *
+        (1.0f - 0.8f * min(soot, 1.0f));
     m.emission +=
         f.blue * f.air.w / f.low.w * gas * mix(vec3(0.02f, 0.10f, 1.0f), vec3(f.tint), f.tint.w);
     return m;

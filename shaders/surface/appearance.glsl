@@ -1,5 +1,5 @@
 // A burning surface as a pure function of time since ignition, appearance and tiling noise. Lengths
-// m, times appearance seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl,
+// m, times appearance seconds, temperatures K, emission cd/m^2. Needs lib/appearance_noise.glsl,
 // lib/colour.glsl and the families of surface.frag. Layer order matters: heat, char, film, ash,
 // glow, rim, soot, water.
 
@@ -112,7 +112,7 @@ float paintFilm(float a, vec4 flakes, MaterialAppearance m) {
 // Blisters of paint and bubbles of plastic, [0, 1].
 float bubbleShape(vec2 d, float pixel, vec4 coarse, bool molten) {
     if (!kBurns || !(kHasPaint || kHasHide)) return 0.0;
-    vec4 cells = lookLayer(d * 2.8, kLayerChar, noiseLod(pixel, 2.8));
+    vec4 cells = appearanceLayer(d * 2.8, kLayerChar, noiseLod(pixel, 2.8));
     float u = molten ? smoothstep(0.47, 0.68, coarse.r) : saturate(cells.g * 2.2) *
                            smoothstep(0.38, 0.60, coarse.r + 0.25 * (coarse.a - 0.5));
     return u * (2.0 - u);
@@ -147,7 +147,7 @@ Skin burningSkin(Site s, MaterialAppearance m) {
     if ((kHasWood || kHasHide) && m.crackDepth > 0.0 && c > 0.0) {
         vec2 uv = s.d / vec2(m.cellX, m.cellY) / 8.0 + (vec2(nA.r, nA.b) - 0.5) * 0.04;
         float lod = noiseLod(s.pixel, 1.0 / (8.0 * m.cellX));
-        vec4 texel = lookLayer(uv, kLayerChar, lod);
+        vec4 texel = appearanceLayer(uv, kLayerChar, lod);
         k = charCracks(a, s, m, texel);
         float open = smoothstep(m.charTime * 0.6, m.crackTime, a);
         vec2 slope = texel.ba * 2.0 - 1.0;
@@ -155,12 +155,13 @@ Skin burningSkin(Site s, MaterialAppearance m) {
                    vec2(m.cellX, m.cellY);
     }
     if ((kHasSheet || kHasPlant || kHasHide) && m.crumple > 0.0 && c > 0.0) {
-        vec2 slope = lookLayer(s.d * 13.0, kLayerRelief, noiseLod(s.pixel, 13.0)).rg * 2.0 - 1.0;
+        float lod = noiseLod(s.pixel, 13.0);
+        vec2 slope = appearanceLayer(s.d * 13.0, kLayerRelief, lod).rg * 2.0 - 1.0;
         o.slope += slope * (kCrumpleSlopeRange * 13.0 * 0.5 * m.crumple * c);
     }
 
     if (kHasHide && m.crumple > 0.0 && x > -1.3 * m.scorchWidth) {  // leather puckers as it shrinks
-        vec2 fold = lookLayer(s.d * 3.1, kLayerRelief, noiseLod(s.pixel, 3.1)).rg * 2.0 - 1.0;
+        vec2 fold = appearanceLayer(s.d * 3.1, kLayerRelief, noiseLod(s.pixel, 3.1)).rg * 2.0 - 1.0;
         // Within the area that is drawn as burning: 1.3 scorchWidth.
         float drawn = smoothstep(-1.3 * m.scorchWidth, -0.3 * m.scorchWidth, x) * (1.0 - 0.5 * c);
         o.slope += fold * (kCrumpleSlopeRange * 3.1 * 4.0 * m.crumple * drawn);

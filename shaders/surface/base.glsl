@@ -1,5 +1,5 @@
 // Procedural detail of the unburnt material, as a factor on its base colour: grain, paint, print,
-// weave, veins, straw. Needs lib/look_noise.glsl. coarse, fine: samples of the front warp.
+// weave, veins, straw. Needs lib/appearance_noise.glsl. coarse, fine: samples of the front warp.
 
 struct Base {
     vec3 factor;  // on the base colour, mean about 1
@@ -24,7 +24,8 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     float wave = 0.5 + 0.5 * sin(ring * 502.65);
     float g = wave * wave * sharp + 0.35 * (1.0 - sharp);
     float fibre =
-        textureLod(lookTextures, vec3(q.x * 24.0, q.y * 1.1, kLayerNoise), noiseLod(pixel, 24.0)).b;
+        textureLod(appearanceTextures, vec3(q.x * 24.0, q.y * 1.1, kLayerNoise),
+                   noiseLod(pixel, 24.0)).b;
     int id = int(plank);
     b.factor = mix(vec3(1.085, 1.118, 1.146), vec3(0.698, 0.590, 0.478), g * 0.75) *
                ((0.82 + 0.36 * fibre) * (0.85 + 0.3 * hash(id, 3, 5)));
@@ -101,8 +102,8 @@ void leafBase(vec2 d, float pixel, vec4 coarse, out Base b) {
     float off = abs(fract((q.y - side * 0.8) / spacing + 0.5) - 0.5) * spacing;
     float midrib = 1.0 - smoothstep(0.0008, 0.0020 + pixel, side);
     float vein = 0.8 * (1.0 - smoothstep(0.0004, 0.0010 + pixel, off));
-    float net = 0.4 * (1.0 - smoothstep(0.02, 0.09 + pixel * 40.0,
-                                        lookLayer(d * 14.0, kLayerChar, noiseLod(pixel, 14.0)).g));
+    float crack = appearanceLayer(d * 14.0, kLayerChar, noiseLod(pixel, 14.0)).g;
+    float net = 0.4 * (1.0 - smoothstep(0.02, 0.09 + pixel * 40.0, crack));
     vein = max(max(midrib, vein), net) * saturate(1.4 - pixel / 0.006);
     b.factor = vec3(mix(0.88, 1.35, vein) * (0.65 + 0.7 * coarse.r) * (0.8 + 0.4 * random));
     b.rough = 0.6;
@@ -158,7 +159,7 @@ Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coa
     if (kHasPlant && kind == kBaseStraw) strawBase(d, pixel, b);
     if (kHasHide && kind == kBaseLeather) {
         float pore =
-            smoothstep(0.02, 0.12, lookLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
+            smoothstep(0.02, 0.12, appearanceLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
         b.factor = vec3((0.75 + 0.5 * coarse.r) * (0.7 + 0.3 * pore));
         b.rough = 0.60 - 0.15 * pore;
         b.height = -0.0003 * (1.0 - pore);

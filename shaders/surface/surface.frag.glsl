@@ -16,7 +16,7 @@ const bool kCold = (kVariant & kSurfaceCold) != 0u;
 FW_READ(PREDICT) FW_READ(GRADIENT) FW_BUFFER(HEAT, readonly, uint, heat)
 FW_UNIFORM(APPEARANCES, MaterialAppearance, appearances[kAppearanceRows])
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
-layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
+layout(set = 2, binding = 0) uniform sampler2DArray appearanceTextures;
 
 layout(location = 0) out vec4 outColor;
 
@@ -46,7 +46,7 @@ const ivec2 kSamplePlaces[30] =
 
 #include "lib/colour.glsl"
 #include "lib/gradient.glsl"
-#include "lib/look_noise.glsl"
+#include "lib/appearance_noise.glsl"
 #include "surface/base.glsl"
 #include "surface/appearance.glsl"
 
@@ -263,11 +263,12 @@ float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
 
 void main() {
     if (kCold && vSootOffset.x > 0.0) discard;
-    MaterialAppearance look = appearances[min(draw.look, kAppearanceRows - 1u)];
-    if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
+    MaterialAppearance appearance = appearances[min(draw.appearance, kAppearanceRows - 1u)];
+    if ((draw.flags & kObjectNoHoles) != 0u) appearance.holeTime = 0.0;
     // The rim uses the host's thickness, within the range of the appearance.
     if (draw.thickness > 0.0)
-        look.thickness = clamp(draw.thickness, 0.4 * look.thickness, 2.0 * look.thickness);
+        appearance.thickness = clamp(draw.thickness, 0.4 * appearance.thickness,
+                                     2.0 * appearance.thickness);
     vec3 inPosition = vPositionFire.xyz, inRest = vRestFire.xyz, inTintColor = vTint.rgb;
     vec2 inAtlas = vTexture.xy;
 
@@ -329,10 +330,10 @@ void main() {
     }
 
     vec4 coarse, fine;
-    vec2 warp = frontWarp(d, pixel, look, coarse, fine);
+    vec2 warp = frontWarp(d, pixel, appearance, coarse, fine);
     vec3 along = axisX * warp.x + axisY * warp.y;
     vec2 shift = vec2(dot(gradU, along), dot(gradV, along));  // texels
-    float rate = max(look.spreadRate, 1e-5);
+    float rate = max(appearance.spreadRate, 1e-5);
     // A long shift could leave the chart: beyond half a texel it is linear.
     vec2 near = clamp(shift, -0.5, 0.5);
     // Without a tangent plane slopes are ignored.
@@ -342,7 +343,8 @@ void main() {
     vec2 wetness = vec2(0.0);
     if (kBurns) {
         arrival = arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * perMetre),
-                      (1.3 * look.scorchWidth / rate + 1.5 * look.jitter) / draw.timeScale);
+                      (1.3 * appearance.scorchWidth / rate + 1.5 * appearance.jitter) /
+                          draw.timeScale);
         arrival.age -= dot(arrival.gradient, shift - near);
         warmth = warmthAt(inAtlas + near);
         vec2 creeps = vec2(coarse.r + 0.4 * fine.b, coarse.g + 0.4 * fine.r) * 3.0 - 2.0;
@@ -362,8 +364,9 @@ void main() {
     bool sheet = (draw.flags & kObjectTwoSided) != 0u;
     vec2 grownAt = sheet ? d : flatPlace;
     grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3)
-                       : vec2(grownAt.x, grownAt.y / look.drip);
-    vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
+                       : vec2(grownAt.x, grownAt.y / appearance.drip);
+    vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : appearance.holeTiles,
+                         max(pixel, appearance.blur));
     vec3 color = draw.colorRough.rgb;
     bool cutOut = false;  // transparent image texel; decided below, where no derivatives are needed
     Base fresh;
@@ -377,7 +380,7 @@ void main() {
         fresh.cavity = 0.45 + 0.55 * saturate(dot(color, vec3(0.9)) + 0.3);
         fresh.height = 0.0;
     } else {
-        fresh = freshBase(look.base, d, pixel, detailed, color, coarse, fine, grown);
+        fresh = freshBase(appearance.base, d, pixel, detailed, color, coarse, fine, grown);
         fresh.rough = clamp(fresh.rough + draw.colorRough.w - 0.7, 0.1, 1.0);
     }
 
@@ -386,10 +389,10 @@ void main() {
     float height = -fresh.height;
     vec2 relief = vec2(dFdx(height), dFdy(height));
     relief = clamp(relief, -pixel, pixel);
-    float bubble = bubbleShape(d, pixel, coarse, look.base != kBasePaint);
+    float bubble = bubbleShape(d, pixel, coarse, appearance.base != kBasePaint);
     vec3 swell = r1 * dFdx(bubble) + r2 * dFdy(bubble);
     float delay = clamp(fresh.delay, -1.5, 1.5);
-    float later = holeDelay(grown, fine, delay, look) + look.jitter * delay;
+    float later = holeDelay(grown, fine, delay, appearance) + appearance.jitter * delay;
     vec3 laterSlope = r1 * dFdx(later) + r2 * dFdy(later);
     if (cutOut || lost) discard;
 
@@ -400,11 +403,13 @@ void main() {
     vec2 flat_ = vec2(dot(slope, axisX), dot(slope, axisY));
     float steep = length(flat_);
     site.slow = clamp(length(slope), 0.25 / rate, 1.6 / rate);  // s/m
-    float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
+    float ahead = 1.3 * max(appearance.scorchWidth, appearance.wiltColor.w) * site.slow +
+        1.5 * appearance.jitter;
     // Water halves the heat's path.
     float behind = 2.0 * (arrival.ahead - 0.7) * inversesqrt(max(dot(gradU, gradU), 1.0));  // m
     float wetAge = clamp(-behind * site.slow, -1.2 * ahead, 0.0);
-    site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, wetAge);
+    site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * appearance.charTime,
+                      wetAge);
     site.ahead = steep > 1e-6 ? flat_ / steep : vec2(0.0, 1.0);
     site.out_ = saturate(arrival.out_ * 1.5 + arrival.damp * 6.0);
     // Glow by the heat buffer: an extinguished texel glows until it has cooled.
@@ -419,7 +424,8 @@ void main() {
     if (arrival.damp > 0.0)
         site.water *= 1.0 - 0.85 * smoothstep(-0.9 * ahead, -0.15 * ahead, site.age) * arrival.damp;
     bool inside = back && (draw.flags & kObjectTwoSided) == 0u;
-    site.soot = inside ? 0.8 * smoothstep(-10.0, -0.3, site.age / max(look.charTime, 1e-3)) : 0.0;
+    site.soot = inside ? 0.8 * smoothstep(-10.0, -0.3, site.age / max(appearance.charTime, 1e-3)) :
+        0.0;
     site.keep = inside ? 2.5 : 1.0;
     site.base = color * fresh.factor * inTintColor;
     site.baseRough = fresh.rough;
@@ -436,7 +442,7 @@ void main() {
     site.offset = cut ? 0.0 : vSootOffset.y;
     if (!cut && (draw.flags & kDrawPlaced) != 0u) {
         site.age = max(site.age, -1e3);
-        site.offset = burnThroughOffset(site.age, vSootOffset.y, look.holeTime);
+        site.offset = burnThroughOffset(site.age, vSootOffset.y, appearance.holeTime);
     }
     site.left = cut ? max(vSootOffset.y, 0.0) * draw.timeScale : -1.0;
     site.nearness = draw.nearness;
@@ -445,12 +451,13 @@ void main() {
     if (wall && !rim) site.left = (draw.flags & kDrawPerPixelHoles) != 0u ? -1.0 : 1000.0;
     if (rim) {
         // Burnt-through char; the rim's glow fades inwards.
-        site.age = max(site.age, look.holeTime);
-        site.left = saturate(-1.0 - vSootOffset.y) * look.thickness * site.slow;
+        site.age = max(site.age, appearance.holeTime);
+        site.left = saturate(-1.0 - vSootOffset.y) * appearance.thickness * site.slow;
     }
-    bool soon = site.offset >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
+    bool soon = site.offset >= 1e-3 || (cut && site.left >= 0.0 && site.left < appearance.holeTime);
     bool cold =
-        !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && !soon && site.brown < 0.01);
+        !kBurns || appearance.spreadRate <= 0.0 ||
+            (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
 #if FW_MULTISAMPLED == 2
     int covered = -1;
@@ -458,21 +465,21 @@ void main() {
     vec3 position = inPosition;
     // Refined faces recede while they burn, by a wall's thickness in its burn time (up to
     // kRefineRecede): they tilt towards the part that caught first.
-    float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
+    float burnt = appearance.holeTime > 0.0 ? site.age / appearance.holeTime : 0.0;
     bool recedes =
         kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
-    float fall = recedes ? draw.thickness / look.holeTime : 0.0;
+    float fall = recedes ? draw.thickness / appearance.holeTime : 0.0;
     fall *= 1.0 - smoothstep(0.9 * kRefineRecede, 1.1 * kRefineRecede, burnt);
     vec3 leaned = normal - slope * min(fall, 1.5 * inversesqrt(max(dot(slope, slope), 1e-8)));
     vec3 facingNormal = back ? -leaned : leaned;
     float deep = -1.0;
-    skin = freshSkin(site, look);
+    skin = freshSkin(site, appearance);
     if (inside) skin.occlusion = 0.5;
     if (kBurns && !cold) {
         vec2 uneven = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;
-        if (look.rimWidth < kThinRim && site.left < 0.0)
+        if (appearance.rimWidth < kThinRim && site.left < 0.0)
             site.steep = clamp(length(site.ahead + uneven), 1.0, 4.0);
-        float edge = holeEdge(max(site.age, -ahead) - look.jitter * delay, site, look);
+        float edge = holeEdge(max(site.age, -ahead) - appearance.jitter * delay, site, appearance);
         if (rim) {
             deep = 0.0;
             vec2 bump = fine.rb - 0.5;
@@ -482,8 +489,8 @@ void main() {
         vec2 rise = uneven;
         rise = site.ahead + rise * min(1.0, 1.2 * inversesqrt(max(dot(rise, rise), 1e-8)));
         // A wall thinner than a pixel would flicker.
-        bool walled = look.thickness > pixel;
-        if (edge < 0.0) deep = walled ? rimHit(edge, rise, look.thickness, ray) : -1.0;
+        bool walled = appearance.thickness > pixel;
+        if (edge < 0.0) deep = walled ? rimHit(edge, rise, appearance.thickness, ray) : -1.0;
 #if FW_MULTISAMPLED == 2
         // Edge distance per pixel, m, limited.
         vec3 farther = axisX * rise.x + axisY * rise.y;
@@ -494,7 +501,7 @@ void main() {
             vec2 off = vec2(kSamplePlaces[kSamples - 2u + i]) * (1.0 / 16.0);
             float there = edge + dot(perPixel, off);
             bool stands =
-                there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
+                there >= 0.0 || (walled && rimHit(there, rise, appearance.thickness, ray) >= 0.0);
             standing |= stands ? 1 << i : 0;
         }
         if (site.left < 0.0) covered = standing;  // a cut mesh ends at its rim
@@ -516,11 +523,12 @@ void main() {
             vec2 bump = fine.rb - 0.5;
             // The wall faces the hole, away from unburnt material.
             vec3 wall = -(axisX * site.ahead.x + axisY * site.ahead.y);
-            facingNormal = normalize(wall + facingNormal * (0.4 - 1.2 * deep / look.thickness) +
+            facingNormal = normalize(wall +
+                                     facingNormal * (0.4 - 1.2 * deep / appearance.thickness) +
                                      0.8 * (axisX * bump.x + axisY * bump.y));
             position -= toEye * deep;
         }
-        skin = burningSkin(site, look);
+        skin = burningSkin(site, appearance);
         if (deep >= 0.0) {
             skin.slope = vec2(0.0);
             skin.occlusion *= 0.8;
@@ -529,7 +537,7 @@ void main() {
         }
     }
 
-    float charred = smoothstep(0.0, max(look.charTime, 1e-3), site.age);
+    float charred = smoothstep(0.0, max(appearance.charTime, 1e-3), site.age);
     relief *= deep >= 0.0 ? 0.0 : 1.0 - 0.6 * charred;
     vec3 tilt = axisX * clamp(skin.slope.x, -1.4, 1.4) + axisY * clamp(skin.slope.y, -1.4, 1.4);
     tilt += r1 * relief.x + r2 * relief.y;

@@ -36,28 +36,28 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
 }
 
 // Medium of a lookup.
-FlameMedium lookMedium(FlameRecord f, FlameLookup look) {
+FlameMedium lookupMedium(FlameRecord f, FlameLookup lookup) {
     vec2 texel =
-        vec2(look.rho * (float(kProfileWidth) / kProfileReach), look.y * float(kProfileHeight));
+        vec2(lookup.rho * (float(kProfileWidth) / kProfileReach), lookup.y * float(kProfileHeight));
     vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));
     vec2 uv = clamp(texel, vec2(0.5), texels - 0.5) / texels;
     FlameMedium m = FlameMedium(0.0, 0.0, 0.5, vec3(0.0));
-    if (look.lit > 0.0)
-        m = flameMedium(f, look, textureLod(profiles, vec3(uv, float(f.profile)), 0.0).xy);
+    if (lookup.lit > 0.0)
+        m = flameMedium(f, lookup, textureLod(profiles, vec3(uv, float(f.profile)), 0.0).xy);
     return m;
 }
 
 // Medium at a place in the tube; size: as flameLookup's.
 FlameMedium placeMedium(FlameRecord f, FlamePlace at, float size) {
-    return lookMedium(f, flameLookup(f, at, size));
+    return lookupMedium(f, flameLookup(f, at, size));
 }
 
 // Medium at t m along the ray.
 FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
     float u = (t - tube.chord.from) / max(tube.chord.gap, 1e-9);
-    FlameLookup look = flameLookup(f, flameAlong(tube.first, tube.delta, u), size);
-    if (((tube.broken >> uint(clamp(u, 0.0, float(kFlameIntervals)))) & 1u) != 0u) look.lit = 0.0;
-    return lookMedium(f, look);
+    FlameLookup lookup = flameLookup(f, flameAlong(tube.first, tube.delta, u), size);
+    if (((tube.broken >> uint(clamp(u, 0.0, float(kFlameIntervals)))) & 1u) != 0u) lookup.lit = 0.0;
+    return lookupMedium(f, lookup);
 }
 
 // White balance; tints keep their colour.

@@ -44,17 +44,18 @@ void main() {
         float t = first + stride * (k + 0.5);
         FlamePlace at =
             flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
-        FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
+        FlameLookup lookup = flameLookup(f, at, max(0.35 * stride, pixel * t));
         // Here, and slightly closer to the axis and the base.
-        vec2 scale = 1.0 / vec2(kProfileReach, 1.0), here = vec2(look.rho, look.y);
+        vec2 scale = 1.0 / vec2(kProfileReach, 1.0), here = vec2(lookup.rho, lookup.y);
         vec2 low = 0.5 / vec2(float(kProfileWidth), float(kProfileHeight));
         vec3 there = vec3(clamp(here * scale, low, 1.0 - low), float(f.profile));
         vec2 seen = textureLod(profiles, there, 0.0).xy;
         there.xy = clamp((here - kNearly) * scale, low, 1.0 - low);
         seen = max(seen, textureLod(profiles, there, 0.0).xy);
-        bool shows = (seen.y > look.erode - 0.02 && seen.y > 0.004) ||
-                     (seen.x > 0.0 && f.blue > 0.0 && look.y < f.blueHeight + kNearly);
-        shows = shows && k < last && look.y < 1.0 + kNearly && look.rho < kProfileReach + kNearly;
+        bool shows = (seen.y > lookup.erode - 0.02 && seen.y > 0.004) ||
+                     (seen.x > 0.0 && f.blue > 0.0 && lookup.y < f.blueHeight + kNearly);
+        shows = shows && k < last && lookup.y < 1.0 + kNearly &&
+            lookup.rho < kProfileReach + kNearly;
         nearest = shows ? min(nearest, k) : nearest;
         farthest = shows ? k : farthest;
         k += 1.0;

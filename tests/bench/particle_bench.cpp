@@ -24,7 +24,7 @@ FwWorldDef sparksWorld() {
     return def;
 }
 
-bool makeSparks(FwWorld* world, uint32_t particles, bool books, FwFireEmitterId& emitter) {
+bool makeSparks(FwWorld* world, uint32_t particles, bool flipbooks, FwFireEmitterId& emitter) {
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
     def.flags = FW_EMITTER_GROUND;
     def.shape = FW_EMITTER_DISC;
@@ -42,9 +42,9 @@ bool makeSparks(FwWorld* world, uint32_t particles, bool books, FwFireEmitterId&
         bookDef.preset = preset;
         return fwWorld_CreateFlipbook(world, &bookDef, &book) == FW_OK;
     };
-    if (books && !(open(FW_FLIPBOOK_FLAME, def.fireFlipbooks[0]) &&
-                   open(FW_FLIPBOOK_ROLL, def.fireFlipbooks[1]) &&
-                   open(FW_FLIPBOOK_SMOKE, def.smokeFlipbooks[0])))
+    if (flipbooks && !(open(FW_FLIPBOOK_FLAME, def.fireFlipbooks[0]) &&
+                       open(FW_FLIPBOOK_ROLL, def.fireFlipbooks[1]) &&
+                       open(FW_FLIPBOOK_SMOKE, def.smokeFlipbooks[0])))
         return false;
     return fwWorld_CreateFireEmitter(world, &def, &emitter) == FW_OK;
 }
@@ -53,7 +53,7 @@ class Sparks {
  public:
     Sparks(const Sparks&) = delete;
     Sparks& operator=(const Sparks&) = delete;
-    explicit Sparks(uint32_t particles, float away, bool books = false)
+    explicit Sparks(uint32_t particles, float away, bool flipbooks = false)
         : particles_(particles), pixels_(1280 * 720 * 4) {
         const FwContextDef contextDef = fwDefaultContextDef();
         const FwWorldDef worldDef = sparksWorld();
@@ -61,7 +61,7 @@ class Sparks {
         if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
             fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
             return;
-        if (!makeSparks(world_, particles, books, emitter_)) return;
+        if (!makeSparks(world_, particles, flipbooks, emitter_)) return;
         for (int i = 0; i < 100; ++i) fwWorld_Step(world_, 1.0f / 60);
         glm::mat4 projection(0.0f);
         projection[0][0] = 2.0f * 9 / 16;
@@ -129,8 +129,8 @@ void simulate(benchmark::State& state, uint32_t particles) {
     state.counters["per_ns"] = 1e9 * least / double(particles);
 }
 
-void drawQuads(benchmark::State& state, uint32_t particles, float away, bool books) {
-    Sparks sparks(particles, away, books);
+void drawQuads(benchmark::State& state, uint32_t particles, float away, bool flipbooks) {
+    Sparks sparks(particles, away, flipbooks);
     if (!sparks.works()) return state.SkipWithError("no device");
     double cpu = 0, least = 1e9;
     const auto both = [&] {
@@ -171,7 +171,7 @@ void drawHalf(benchmark::State& state, uint32_t particles, float away) {
     if (targets[0].index1 == 0 || targets[1].index1 == 0 ||
         !makeSparks(host.world(), particles, false, emitter))
         return state.SkipWithError("no particles at half resolution");
-    host.look({0, 2, away}, {0, 2, 0}, 2);
+    host.appearance({0, 2, away}, {0, 2, 0}, 2);
     double wall = 0, cpu = 0;
     for (int i = 0; i < 100; ++i)
         if (!host.frame(targets[0], 1.0f / 60, wall, cpu))

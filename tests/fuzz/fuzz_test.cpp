@@ -291,8 +291,8 @@ class Fuzz {
         for (float& x : def.extent) x = random_.number();
         garble(def);
         def.structSize = sizeof def;
-        if (random_.once(2)) def.fireFlipbooks[random_.below(3)] = books_.any(random_);
-        if (random_.once(2)) def.smokeFlipbooks[random_.below(2)] = books_.any(random_);
+        if (random_.once(2)) def.fireFlipbooks[random_.below(3)] = flipbooks_.any(random_);
+        if (random_.once(2)) def.smokeFlipbooks[random_.below(2)] = flipbooks_.any(random_);
         FwFireEmitterId id{};
         const FwResult result = fwWorld_CreateFireEmitter(world_, &def, &id);
         check(result);
@@ -419,8 +419,8 @@ class Fuzz {
         FwFlipbookId id{};
         const FwResult result = fwWorld_CreateFlipbook(world_, &def, &id);
         check(result);
-        if (result == FW_OK) books_.known.push_back(id);
-        check(fwWorld_SetFlameFlipbooks(world_, books_.any(random_), books_.any(random_)));
+        if (result == FW_OK) flipbooks_.known.push_back(id);
+        check(fwWorld_SetFlameFlipbooks(world_, flipbooks_.any(random_), flipbooks_.any(random_)));
     }
 
     void createProfile() {
@@ -833,8 +833,8 @@ class Fuzz {
                 break;
             case 27:
                 if (profiles_.known.size() < 4 || random_.once(8)) createProfile();
-                if (books_.known.size() < 3 || random_.once(20)) createBook();
-                if (random_.once(3)) destroy(books_, fwWorld_DestroyFlipbook);
+                if (flipbooks_.known.size() < 3 || random_.once(20)) createBook();
+                if (random_.once(3)) destroy(flipbooks_, fwWorld_DestroyFlipbook);
                 if (random_.once(3)) destroy(profiles_, fwWorld_DestroyFireProfile);
                 break;
             case 28:
@@ -873,7 +873,7 @@ class Fuzz {
             flames_.known.clear();
             emitters_.known.clear();
             profiles_.known.clear();
-            books_.known.clear();
+            flipbooks_.known.clear();
             colliders_.known.clear();
             zones_.known.clear();
             rooms_.known.clear();
@@ -893,7 +893,7 @@ class Fuzz {
     Ids<FwVolumetricFireId> flames_;
     Ids<FwFireEmitterId> emitters_;
     Ids<FwFireProfileId> profiles_;
-    Ids<FwFlipbookId> books_;
+    Ids<FwFlipbookId> flipbooks_;
     std::vector<unsigned char> saved_;  // the last save kept
     Ids<FwFireColliderId> colliders_;
     Ids<FwWindZoneId> zones_;

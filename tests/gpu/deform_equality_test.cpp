@@ -42,7 +42,7 @@ struct Pair {
           states(domain.texelCount(), gpu::kInert),
           rig(testDevice, kBindings, sizeof(gpu::DeformPush),
               words ? std::span<const uint32_t>() : kTexels) {
-        object.nodeCount = uint32_t(model.particles.size());
+        object.particleCount = uint32_t(model.particles.size());
         object.vertexCount = uint32_t(domain.vertices.size());
         object.ground = -1e9f;
         object.scale = 1;
@@ -56,7 +56,7 @@ struct Pair {
         for (size_t i = 0; i < embeddings.size(); ++i)
             mesh::putQuads(model.embeddings[i], i, embeddings.size(),
                            reinterpret_cast<std::byte*>(embeddings.data()));
-        groups = (std::max(object.nodeCount, object.vertexCount) + gpu::kDeformGroup - 1) /
+        groups = (std::max(object.particleCount, object.vertexCount) + gpu::kDeformGroup - 1) /
                  gpu::kDeformGroup;
         const gpu::vec4 rows[10] = {{}, {}, {}, {}, {}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
         rig.make(FW_BIND_STATE, states.size() * 4);
@@ -198,7 +198,7 @@ struct Pair {
                 gpu::dot(gpu::unpackDirection(a.normal), gpu::unpackDirection(b.normal));
             worst.normal +=
                 std::acos(double(std::clamp(c, -1.0f, 1.0f))) * 57.3 / double(shown.size());
-            worst.lead = std::max(worst.lead, double(std::fabs(a.lead - b.lead)));
+            worst.lead = std::max(worst.lead, double(std::fabs(a.burnThrough - b.burnThrough)));
         }
         return worst;
     }
@@ -285,11 +285,11 @@ TEST_F(DeformEquality, InnerSkinsOfRecedingSolidsAgree) {
             const vec3 depth = outside - inside, normal = gpu::unpackDirection(out.normal);
             ASSERT_GT(gpu::dot(depth, normal), 0.5f * gpu::kThinnestWall * kWall)
                 << now << ' ' << i;
-            ASSERT_EQ(out.lead, in.lead);
+            ASSERT_EQ(out.burnThrough, in.burnThrough);
             ASSERT_EQ(out.normal, in.normal);
             const float* place = pair.skin[i].position;
             const bool stays = gpu::length(inside - vec3(place[0], place[1], place[2])) < 1e-7f;
-            const float burnt = shown[pair.model.embeddings[i].node].burnt;
+            const float burnt = shown[pair.model.embeddings[i].particle].burnt;
             ASSERT_TRUE(stays || burnt > 1 - 2.01f * gpu::kThinnestWall) << now << ' ' << i;
             (stays ? still : gone) += 1;
         }

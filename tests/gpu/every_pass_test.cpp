@@ -1,9 +1,9 @@
 // Runs every pass and shader once on buffers of exact size. Under GPU-assisted validation
 // (tests/run --gpu-assisted) each access past an end is reported, which the second test proves.
 // Without it a software device would not notice.
+#include "components/exchange_object.h"
 #include "components/heat_occlusion.h"
 #include "components/particle_field.h"
-#include "components/remote.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
 #include "flamewright_reference.h"
@@ -23,7 +23,7 @@ namespace fw::test::every_pass_test {
 namespace {
 
 constexpr uint32_t kSide = 48;  // px
-constexpr std::string_view kOfPublished[] = {"published", "skin", "refine_pattern"};
+constexpr std::string_view kReferencePasses[] = {"published", "skin", "refine_pattern"};
 
 class EveryPass : public GpuTest {
  protected:
@@ -48,13 +48,13 @@ class EveryPass : public GpuTest {
         const mesh::BurnDomain& domain = scene.domains[0];
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
             object.materials[m] = plainMaterial(domain, 0.3, 1.0, 1.0);
-            object.materials[m].look =
+            object.materials[m].appearance =
                 FW_MATERIAL_POLYESTER;  // all material families, including plants
             object.materials[m].baseColor = {0.8f, 0.4f, 0.2f, 900};
             object.materials[m].holeTicks = 300;  // pieces fall
         }
-        object.materials[1].look = FW_MATERIAL_THATCH;
-        object.materials[2].look = FW_MATERIAL_PINE;
+        object.materials[1].appearance = FW_MATERIAL_THATCH;
+        object.materials[2].appearance = FW_MATERIAL_PINE;
         object.slowness.assign(domain.slowness.begin(), domain.slowness.end());
         scene.models.push_back(mesh::makeDeformModel(domain, std::pmr::get_default_resource()));
         if (!published) {
@@ -68,7 +68,7 @@ class EveryPass : public GpuTest {
             object.flags = gpu::kObjectExtended;
             object.reference = true;
             scene.objects.push_back(object);
-            scene.addPublished();
+            scene.refineByReference();
             return scene;
         }
         object.deform.flags = gpu::kDeformShell;
@@ -112,7 +112,7 @@ class EveryPass : public GpuTest {
 
     void makeRig(uint32_t shortBinding, bool published) {
         gpu::vk::WorldLimits limits;
-        limits.looks = testLooks();
+        limits.appearances = testAppearances();
         limits.exactBuffers = true;
         limits.maxFlames = 64;  // fewer than the scene needs
         limits.maxLights = 4;
@@ -297,10 +297,11 @@ class EveryPass : public GpuTest {
             if (&step == steps.data()) {
                 step.events = events;
                 if (what.latch) step.materials = {&update, 1};
-                if (what.exchange) step.remote = &exchange_;
+                if (what.exchange) step.exchangeUpdate = &exchange_;
             }
             // Without it up to that step.
-            if (what.exchange && &step == &steps[what.steps / 2]) step.shield = &occlusion_;
+            if (what.exchange && &step == &steps[what.steps / 2])
+                step.occlusionUpdate = &occlusion_;
             if (what.exchange) {
                 step.exchange = step.governed = step.capped = true;
                 step.rules.flags = 15;
@@ -420,12 +421,12 @@ class EveryPass : public GpuTest {
     // From here on flames and particles show flipbooks.
     void showFlipbooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-        flipbook::Flipbook books[3]{flipbook::Flipbook(memory), flipbook::Flipbook(memory),
-                                    flipbook::Flipbook(memory)};
-        const flipbook::Flipbook* placed[] = {&books[0], &books[1], &books[2]};
+        flipbook::Flipbook flipbooks[3]{flipbook::Flipbook(memory), flipbook::Flipbook(memory),
+                                        flipbook::Flipbook(memory)};
+        const flipbook::Flipbook* placed[] = {&flipbooks[0], &flipbooks[1], &flipbooks[2]};
         const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SMOKE, FW_FLIPBOOK_SPARK};
         for (int i = 0; i < 3; ++i)
-            flipbook::readFlipbook(flipbook::presetFlipbook(presets[i], memory), books[i]);
+            flipbook::readFlipbook(flipbook::presetFlipbook(presets[i], memory), flipbooks[i]);
         const flipbook::Picture picture = flipbook::packFlipbooks(placed, memory);
         rig_->backend.setFlipbooks(picture.width, picture.height,
                                    std::as_bytes(std::span(picture.texels)), picture.words);
@@ -511,8 +512,8 @@ class EveryPass : public GpuTest {
         rig_->context.fillInfo(info);
         if (!info.gpuTimers) return;  // without timers it is unknown which passes ran
         const auto expectOne = [&](const char* name) {
-            const bool second = std::find(std::begin(kOfPublished), std::end(kOfPublished),
-                                          std::string_view(name)) != std::end(kOfPublished);
+            const bool second = std::find(std::begin(kReferencePasses), std::end(kReferencePasses),
+                                          std::string_view(name)) != std::end(kReferencePasses);
             if (second != published) return;
             EXPECT_TRUE(passes_.contains(name)) << name << " is not run by this test's scenes";
         };

@@ -36,12 +36,12 @@ class FieldComparison : public GpuTest {
         field::FieldDef def;
         def.width = width;
         def.height = height;
-        def.look = field::fieldPreset(field::FieldPreset(preset));
+        def.appearance = field::fieldPreset(field::FieldPreset(preset));
         def.open = open;
         def.wind = {0.2f * float(preset), 0};
         def.seed = 5 + preset;
         made.rules = field::fieldRules(def);
-        field::addDefaultSource(made.rules, def.look);
+        field::addDefaultSource(made.rules, def.appearance);
         made.rules.sources[1] = made.rules.sources[0];  // and a disc
         made.rules.sources[1].disc = 1;
         made.rules.sources[1].cells = {int(width / 3), int(height / 2), int(width / 3) + 7,

@@ -61,7 +61,7 @@ class HostDraw : public GpuTest {
         GpuTest::SetUp();
         if (!device_) return;
         gpu::vk::WorldLimits limits;
-        limits.looks = testLooks();
+        limits.appearances = testAppearances();
         rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits, countingEntry());
         // A ball that fills the middle of the picture.
         mesh::BakeInput input;
@@ -72,7 +72,7 @@ class HostDraw : public GpuTest {
         SceneObject object;
         for (auto& material : object.materials) {
             material = plainMaterial(scene_.domains[0], 0.05);
-            material.look = look_;
+            material.appearance = look_;
             material.baseColor = {0.8f, 0.1f, 0.6f, 0};  // nothing else in the picture is purple
         }
         scene_.objects.push_back(object);

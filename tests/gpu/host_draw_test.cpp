@@ -301,7 +301,7 @@ TEST_F(HostDraw, MaterialFamiliesCreateTheirPipelinesOnFirstUse) {
         gpu::ObjectInit init = scene_.init(0);
         std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials =
             scene_.objects[0].materials;
-        for (gpu::BurnMaterial& material : materials) material.look = look;
+        for (gpu::BurnMaterial& material : materials) material.appearance = look;
         init.materials = materials;
         init.record.worldRow0.w = x;
         init.record.worldRow2.w = -1;

@@ -85,9 +85,9 @@ TEST_F(VkContract, SteadyFramesAllocateNothing) {
     if (!device_) return;
     BurnScene scene = BurnScene::make(21, 0.6);
     scene.objects[0].reference = true;  // the first object uses the reference refinement
-    scene.addPublished();
+    scene.refineByReference();
     gpu::vk::WorldLimits limits;
-    limits.looks = testLooks();
+    limits.appearances = testAppearances();
     VkRig rig(*device_, 2, 0, limits, countingEntry());
     scene.create(rig.backend);
     const float* low = scene.domains[0].boundsLow;
@@ -488,7 +488,7 @@ TEST_F(VkThreads, TargetsMayBeRegisteredWhileFramesRecord) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(28, 0.4);
     gpu::vk::WorldLimits limits;
-    limits.looks = testLooks();
+    limits.appearances = testAppearances();
     VkRig rig(*device_, 2, 0, limits);
     scene.create(rig.backend);
     std::atomic<bool> stop = false;
@@ -515,7 +515,7 @@ TEST_F(VkThreads, TargetsMayBeRegisteredWhileFramesRecord) {
         if (f % 10 != 0) continue;  // a material family that targets of the other thread still lack
         gpu::ObjectInit init = scene.init(0);
         auto materials = scene.objects[0].materials;
-        for (gpu::BurnMaterial& material : materials) material.look = kKinds[f / 10];
+        for (gpu::BurnMaterial& material : materials) material.appearance = kKinds[f / 10];
         init.materials = materials;
         rig.backend.createObject(uint32_t(scene.objects.size()) + uint32_t(f) / 10, init);
     }

@@ -55,7 +55,7 @@ class Volume : public GpuTest {
     void makeRig(PFN_vkGetInstanceProcAddr entry = nullptr, uint32_t steps = 64) {
         gpu::vk::WorldLimits limits;
         limits.rayStepCount = steps;
-        limits.looks = testLooks();
+        limits.appearances = testAppearances();
         targets_ = {};  // of the previous rig
         index_ = 0;
         rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits, entry);
@@ -302,7 +302,7 @@ class Volume : public GpuTest {
         std::vector<vec4> picture(kSide * kSide, vec4(0.0f));
         if (!lod::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
         volume::Profile profile;
-        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).look, profile);
+        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).appearance, profile);
         if (own_) profile = *own_;
         const vec3 white =
             glm::mix(vec3(1.0f, 1.25f, 1.6f), vec3(1.0f), flame.record.tint.w) * gpu::kVolumeWhite;
@@ -413,7 +413,7 @@ class Volume : public GpuTest {
         gpu::VolumeDraw draw{};
         EXPECT_TRUE(lod::volumeDraw(view, low, high, 1, draw));
         volume::Profile profile;
-        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).look, profile);
+        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).appearance, profile);
         const vec3 white =
             glm::mix(vec3(1.0f, 1.25f, 1.6f), vec3(1.0f), flame.record.tint.w) * gpu::kVolumeWhite;
         volume::MarchRules rules;
@@ -590,12 +590,12 @@ class Volume : public GpuTest {
     // Flipbooks for emitters: a flame, a roll and a puff.
     void packFlipbooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-        std::vector<flipbook::Flipbook> books;
+        std::vector<flipbook::Flipbook> flipbooks;
         for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_ROLL, FW_FLIPBOOK_PUFF}) {
-            books.emplace_back(memory);
-            flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory), books.back());
+            flipbooks.emplace_back(memory);
+            flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory), flipbooks.back());
         }
-        const flipbook::Flipbook* const placed[] = {&books[0], &books[1], &books[2]};
+        const flipbook::Flipbook* const placed[] = {&flipbooks[0], &flipbooks[1], &flipbooks[2]};
         const flipbook::Picture pages = flipbook::packFlipbooks(placed, memory);
         rig_->backend.setFlipbooks(pages.width, pages.height,
                                    std::as_bytes(std::span(pages.texels)), pages.words);
@@ -770,7 +770,7 @@ TEST_F(Volume, DrawsTheHostsProfile) {
     EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "an empty layer";
     const auto profile = std::make_unique<volume::Profile>();
     for (const uint32_t from : {FW_FIRE_TORCH, FW_FIRE_CAMP}) {
-        volume::paintLook(volume::presetDef(volume::FlamePreset(from)).look, *profile);
+        volume::paintLook(volume::presetDef(volume::FlamePreset(from)).appearance, *profile);
         rig_->backend.setFireProfile(slot, profile->texels);
         own_ = profile.get();
         const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
@@ -1530,18 +1530,18 @@ TEST_F(Volume, AJetByNoiseLooksLikeOneByFlipbooks) {
     jet.direction[0] = 1;
     jet.direction[1] = 0.1f;
     jet.power = kPower;
-    const float reach = components::emitterLook(jet).reach;
+    const float reach = components::emitterAppearance(jet).reach;
     const vec3 above(0, 0.6f * tallOf(kPower), 0), along(0.6f * reach, 0.15f * reach, 0);
-    const vec4 books = light([&](Mean& mean) { addEmitter(jet, mean); }, along);
+    const vec4 flipbooks = light([&](Mean& mean) { addEmitter(jet, mean); }, along);
     const vec4 noise = light([&](Mean& mean) { addEmitter(jet, mean, false); }, along);
     const vec4 volume = light([&](Mean& mean) { addVolume(kPower, mean); }, above);
-    const float brighter = glm::dot(noise, kSeen) / glm::dot(books, kSeen);
-    const float greener = (noise.y / noise.x) / (books.y / books.x);
+    const float brighter = glm::dot(noise, kSeen) / glm::dot(flipbooks, kSeen);
+    const float greener = (noise.y / noise.x) / (flipbooks.y / flipbooks.x);
     std::printf(
-        "[   FIGURE ] %g kW: a jet by noise against books: light %.2f, green of red %.2f; "
+        "[   FIGURE ] %g kW: a jet by noise against flipbooks: light %.2f, green of red %.2f; "
         "its light is %.2f of a volume's\n",
         double(kPower), double(brighter), double(greener),
-        double(glm::dot(books, kSeen) / glm::dot(volume, kSeen)));
+        double(glm::dot(flipbooks, kSeen) / glm::dot(volume, kSeen)));
     EXPECT_NEAR(1, brighter, 0.08f);
     EXPECT_NEAR(1, greener, 0.1f);
 }

@@ -290,7 +290,7 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
 void skinVertices(const DeformModel& model, DeformState& state, bool tears) {
     for (size_t i = 0; i < model.embeddings.size(); ++i) {
         const gpu::DeformEmbedding& embedding = model.embeddings[i];
-        const ShownVertex& node = state.shown[embedding.node];
+        const ShownVertex& node = state.shown[embedding.particle];
         const vec3 at = placeOf(node);
         vec3 turned(0), before(0);
         float square = 0;
@@ -308,10 +308,10 @@ void skinVertices(const DeformModel& model, DeformState& state, bool tears) {
                 rest, vec3(embedding.faceX, embedding.faceY, embedding.faceZ), turned / size);
         ShownVertex& shown = state.shown[i];
         shown.normal = normal == rest ? embedding.normal : gpu::packDirection(normal);
-        shown.lead = node.behind;
+        shown.burnThrough = node.behind;
         if (tears)
-            shown.lead =
-                std::max(shown.lead, gpu::tornOffset(square, embedding.longest, node.burnt));
+            shown.burnThrough =
+                std::max(shown.burnThrough, gpu::tornOffset(square, embedding.longest, node.burnt));
         shown.burnt = node.burnt;
         place(shown, at);
     }

@@ -8,7 +8,7 @@ namespace fw::field {
 
 // A bed along the bottom (fire, smoke) or a spout at the top (a field that falls), a fifth of the
 // width.
-inline void addDefaultSource(FieldRules& rules, const FieldLook& look) noexcept {
+inline void addDefaultSource(FieldRules& rules, const FieldAppearance& look) noexcept {
     if (rules.sourceCount >= gpu::kFieldSources) return;
     const int w = int(rules.width), h = int(rules.height);
     const int half = std::max(w / 10, 1), rows = std::max(h / 32, 1);

@@ -113,7 +113,7 @@ namespace {
 constexpr uint32_t kReferenceDepth = 2;
 }
 
-void BurnScene::addPublished() { refinesByReference = true; }
+void BurnScene::refineByReference() { refinesByReference = true; }
 
 gpu::ObjectInit BurnScene::init(uint32_t index) const {
     const SceneObject& object = objects[index];
@@ -301,16 +301,16 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
     return out;
 }
 
-gpu::LookSources testLooks() {
+gpu::AppearanceSources testAppearances() {
     static const std::vector<gpu::MaterialAppearance> table = [] {
         std::vector<gpu::MaterialAppearance> rows;
-        for (uint32_t i = 0; i < components::kLookCount; ++i)
-            rows.push_back(components::materialLook(i));
+        for (uint32_t i = 0; i < components::kAppearanceCount; ++i)
+            rows.push_back(components::materialAppearance(i));
         return rows;
     }();
     static const std::pmr::vector<std::byte> textures =
-        components::bakeLookTextures(std::pmr::get_default_resource());
-    gpu::LookSources looks;
+        components::bakeAppearanceTextures(std::pmr::get_default_resource());
+    gpu::AppearanceSources looks;
     looks.table = table;
     looks.textures = textures;
     static const std::pmr::vector<std::byte> profiles =

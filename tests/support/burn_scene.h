@@ -36,7 +36,7 @@ struct BurnScene {
     // Gives all objects heat: thick wood and thin cloth, damp and dry, at some 100 times the pace.
     void addHeat();
     // Builds the reference refinement model of two halvings.
-    void addPublished();
+    void refineByReference();
     void create(gpu::Backend& backend) const;
     [[nodiscard]] gpu::ObjectInit init(uint32_t object) const;
 };
@@ -77,7 +77,7 @@ class PlanMaker {
 };
 
 // Tables, textures and view block of the components as the C edge passes them to a backend.
-gpu::LookSources testLooks();
+gpu::AppearanceSources testAppearances();
 // From `eye` to `target`, vertical field of view in degrees; Vulkan clip space.
 FwView testView(const float eye[3], const float target[3], float degrees, float aspect,
                 bool reversedDepth);

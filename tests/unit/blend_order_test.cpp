@@ -1,6 +1,6 @@
 // The device or the host sorts blended draws.
 #include "gpu/passes/blend_order.h"
-#include "shared/look.h"
+#include "shared/appearance.h"
 
 #include <gtest/gtest.h>
 

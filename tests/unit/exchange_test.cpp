@@ -1,6 +1,6 @@
 // Heat transfer between objects: radiation and plume against their formulas, occluder boxes, spread
 // limits, embers, contacts.
-#include "components/remote.h"
+#include "components/exchange_object.h"
 #include "fire/presets.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_backend.h"
@@ -317,7 +317,7 @@ TEST(Exchange, TilesHaveCentresNormalsAndCells) {
         texels += tile.texels;
         if (tile.texels < 64) continue;  // tiles that lie within one face
         ++seen;
-        EXPECT_LT(gpu::tileCell(tile), cells);
+        EXPECT_LT(gpu::tileCluster(tile), cells);
         const ivec3 n = gpu::decodeNormal(tile.normal);
         const ivec3 at = gpu::toWorldMm(placed.place, gpu::tileMiddle(tile));
         for (int k = 0; k < 3; ++k)

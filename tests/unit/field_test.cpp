@@ -64,11 +64,11 @@ TEST(Field, ConservesParticles) {
     for (const uint32_t preset : {0u, 1u, 2u}) {
         FieldDef def;
         def.width = 12, def.height = 16;
-        def.look = fieldPreset(FieldPreset(preset));
+        def.appearance = fieldPreset(FieldPreset(preset));
         def.wind = {0.3f, 0.0f};
         def.open = fw::gpu::kFieldOpenTop | fw::gpu::kFieldOpenRight;
         FieldRules rules = fieldRules(def);
-        addDefaultSource(rules, def.look);
+        addDefaultSource(rules, def.appearance);
         Field field = fieldOf(def.width, def.height);
         std::mt19937 random(preset);
         std::vector<uint8_t> masks(field.masks.size());
@@ -234,9 +234,9 @@ TEST(Field, PresetsRiseAndFall) {
     double height[kFieldPresets], lit[kFieldPresets];
     for (uint32_t p = 0; p < kFieldPresets; ++p) {
         FieldDef def;
-        def.look = fieldPreset(FieldPreset(p));
+        def.appearance = fieldPreset(FieldPreset(p));
         FieldRules rules = fieldRules(def);
-        addDefaultSource(rules, def.look);
+        addDefaultSource(rules, def.appearance);
         Field field = fieldOf(64, 64);
         for (int s = 0; s < 400; ++s) stepField(field, rules);
         height[p] = momentsOf(field).y;

@@ -201,7 +201,7 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
 // another flame's frames.
 TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     constexpr uint32_t kFlames = 12;
-    auto books = std::make_unique<lod::ImpostorAtlases>();
+    auto atlases = std::make_unique<lod::ImpostorAtlases>();
     std::vector<lod::AtlasItem> items(kFlames);
     std::vector<uint32_t> had(kFlames, lod::kNoAtlas), out(kFlames);
     std::vector<lod::AtlasCursor> readers(kFlames);
@@ -214,28 +214,28 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     items[8].kind.wide = 1;  // too wide
     items[11].kind.plain = false;
     const auto frame = [&] {
-        lod::chooseAtlases(items, had, 2, *books, out);
-        for (lod::ImpostorAtlas& book : *books)
-            if (book.used) book.frames[book.written++ % lod::kAtlasFrames].run = book.run;
+        lod::chooseAtlases(items, had, 2, *atlases, out);
+        for (lod::ImpostorAtlas& atlas : *atlases)
+            if (atlas.used) atlas.frames[atlas.written++ % lod::kAtlasFrames].run = atlas.run;
         for (uint32_t i = 0; i < items.size(); ++i) {
             if (out[i] == lod::kNoAtlas) continue;
-            readers[i].read(out[i], *books);
+            readers[i].read(out[i], *atlases);
             had[i] = out[i];
         }
     };
     for (uint32_t i = 0; i < kFlames; ++i) readers[i].key = items[i].key;
     frame();
-    EXPECT_EQ(103u, (*books)[0].key) << "the largest flame";
-    EXPECT_EQ(8u, (*books)[0].shares);
+    EXPECT_EQ(103u, (*atlases)[0].key) << "the largest flame";
+    EXPECT_EQ(8u, (*atlases)[0].shares);
     EXPECT_EQ(lod::kNoAtlas, out[11]);
     // With two impostors the second goes to the first flame without one.
-    EXPECT_EQ(108u, (*books)[1].key);
+    EXPECT_EQ(108u, (*atlases)[1].key);
     EXPECT_EQ(lod::kNoAtlas, out[9]) << "there are only two";
     for (int k = 0; k < 40; ++k) frame();
     std::set<uint64_t> late;
-    for (uint32_t i = 0; i < 8; ++i) late.insert((*books)[0].written - 1 - readers[i].at);
+    for (uint32_t i = 0; i < 8; ++i) late.insert((*atlases)[0].written - 1 - readers[i].at);
     EXPECT_GE(late.size(), 6u);
-    EXPECT_EQ((*books)[0].written - 1, readers[3].at) << "its own frames as they are written";
+    EXPECT_EQ((*atlases)[0].written - 1, readers[3].at) << "its own frames as they are written";
     EXPECT_LE(*late.rbegin() + lod::kAtlasFrameStep, lod::kAtlasFrames);
 
     // Another flame's frames: each reader switches to them in turn.
@@ -245,7 +245,7 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     for (uint32_t k = 0; k < lod::kAtlasFrames; ++k) {
         const std::vector<lod::AtlasCursor> last = readers;
         frame();
-        EXPECT_NE(103u, (*books)[0].key);
+        EXPECT_NE(103u, (*atlases)[0].key);
         for (uint32_t i = 0; i < 8; ++i) {
             const lod::AtlasCursor& r = readers[i];
             if (i == 3) continue;
@@ -255,7 +255,7 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
             } else {
                 EXPECT_EQ(last[i].at + 1, r.at) << i;
             }
-            EXPECT_LT((*books)[0].written - r.at, lod::kAtlasFrames);
+            EXPECT_LT((*atlases)[0].written - r.at, lod::kAtlasFrames);
         }
     }
     EXPECT_EQ(7u, turns) << "each once";

@@ -178,12 +178,13 @@ TEST(Flipbook, BuiltInFlipbooksMatchTheirHeader) {
 
 // Every texel is where its record says, no two overlap, and frames have an empty border.
 TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
-    std::vector<flipbook::Flipbook> books;
+    std::vector<flipbook::Flipbook> flipbooks;
     for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SPARK, FW_FLIPBOOK_HAZE}) {
-        books.emplace_back(memory());
-        flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory()), books.back());
+        flipbooks.emplace_back(memory());
+        flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory()), flipbooks.back());
     }
-    const flipbook::Flipbook* const placed[] = {&books[0], nullptr, &books[1], &books[2]};
+    const flipbook::Flipbook* const placed[] = {&flipbooks[0], nullptr, &flipbooks[1],
+                                                &flipbooks[2]};
     const flipbook::Picture picture = flipbook::packFlipbooks(placed, memory());
     EXPECT_LE(picture.width, flipbook::kMaxPicture);
     std::vector<uint8_t> taken(size_t(picture.width) * picture.height);

@@ -2,7 +2,7 @@
 // the right cells.
 #include "components/heat_occlusion.h"
 
-#include "components/remote.h"
+#include "components/exchange_object.h"
 #include "mesh/bake.h"
 #include "support/meshes.h"
 

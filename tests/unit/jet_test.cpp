@@ -38,10 +38,10 @@ TEST(JetStream, MovesWithItsParticles) {
         def.power = power;
         def.sparks = def.turbulence = 0;
         ParticleReference jet(def);
-        const components::JetFlight flight = components::jetFlight(jet.emitter.look);
+        const components::JetFlight flight = components::jetFlight(jet.emitter.appearance);
         jet.emitter.ring = 400;
         jet.particles.resize(400);
-        jet.emitter.look.rate = 10000;
+        jet.emitter.appearance.rate = 10000;
         jet.step(1 / 50.0f);  // a puff
         jet.emitter.def.power = 0;
         for (uint32_t k = 1; k <= 6; ++k) {
@@ -64,7 +64,7 @@ TEST(JetStream, MovesWithItsParticles) {
 }
 
 TEST(JetStream, ArrivesInOrderAndBeforeItsNextExchange) {
-    components::EmitterLook look;
+    components::EmitterAppearance look;
     look.speed = 12;
     look.dragStream = 1.5f;
     look.dragTorn = 0.45f;

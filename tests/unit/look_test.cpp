@@ -17,9 +17,9 @@ namespace {
 
 using gpu::MaterialAppearance;
 
-TEST(LookTable, EveryPresetIsComplete) {
-    for (uint32_t preset = 0; preset < kLookCount; ++preset) {
-        const MaterialAppearance m = materialLook(preset);
+TEST(AppearanceTable, EveryPresetIsComplete) {
+    for (uint32_t preset = 0; preset < kAppearanceCount; ++preset) {
+        const MaterialAppearance m = materialAppearance(preset);
         SCOPED_TRACE(preset);
         EXPECT_EQ(m.spreadRate > 0, preset != FW_MATERIAL_NONCOMBUSTIBLE);
         // Shaders divide by these.
@@ -38,52 +38,53 @@ TEST(LookTable, EveryPresetIsComplete) {
     }
 }
 
-TEST(LookTable, OutOfRangePresetsDoNotBurn) {
-    EXPECT_EQ(materialLook(kLookCount).spreadRate, 0.0f);
-    EXPECT_EQ(materialLook(0xFFFFFFFFu).spreadRate, 0.0f);
-    EXPECT_EQ(materialLook(kLookCount).base, gpu::kBaseStone);
+TEST(AppearanceTable, OutOfRangePresetsDoNotBurn) {
+    EXPECT_EQ(materialAppearance(kAppearanceCount).spreadRate, 0.0f);
+    EXPECT_EQ(materialAppearance(0xFFFFFFFFu).spreadRate, 0.0f);
+    EXPECT_EQ(materialAppearance(kAppearanceCount).base, gpu::kBaseStone);
 }
 
-TEST(LookTable, CracksOpenWhileTheyGlow) {
-    for (uint32_t preset = 0; preset < kLookCount; ++preset) {
-        const MaterialAppearance m = materialLook(preset);
+TEST(AppearanceTable, CracksOpenWhileTheyGlow) {
+    for (uint32_t preset = 0; preset < kAppearanceCount; ++preset) {
+        const MaterialAppearance m = materialAppearance(preset);
         if (m.crackDepth > 0) {
             EXPECT_LT(m.crackTime, 0.6f * m.crackLife) << preset;
         }
     }
 }
 
-class LookTextures : public testing::Test {
+class AppearanceTextures : public testing::Test {
  protected:
     static void SetUpTestSuite() {
-        bytes_ = new std::pmr::vector<std::byte>(bakeLookTextures(std::pmr::new_delete_resource()));
+        bytes_ = new std::pmr::vector<std::byte>(
+            bakeAppearanceTextures(std::pmr::new_delete_resource()));
     }
     static void TearDownTestSuite() { delete bytes_; }
     static int at(uint32_t layer, uint32_t mip, uint32_t x, uint32_t y, uint32_t channel) {
-        const uint32_t side = kLookTextureSide >> mip;
-        return int((*bytes_)[lookTextureOffset(layer, mip) +
+        const uint32_t side = kAppearanceTextureSide >> mip;
+        return int((*bytes_)[appearanceTextureOffset(layer, mip) +
                              size_t{(y % side) * side + x % side} * 4 + channel]);
     }
     static std::pmr::vector<std::byte>* bytes_;
 };
-std::pmr::vector<std::byte>* LookTextures::bytes_ = nullptr;
+std::pmr::vector<std::byte>* AppearanceTextures::bytes_ = nullptr;
 
-TEST_F(LookTextures, HaveTheirSizesAndOffsets) {
-    EXPECT_EQ(bytes_->size(), lookTextureOffset(kLookTextureLayers, 0));
-    EXPECT_EQ(lookTextureOffset(0, 1), size_t{512 * 512 * 4});
-    EXPECT_EQ(lookTextureOffset(1, 0), size_t{349525 * 4});
+TEST_F(AppearanceTextures, HaveTheirSizesAndOffsets) {
+    EXPECT_EQ(bytes_->size(), appearanceTextureOffset(kAppearanceTextureLayers, 0));
+    EXPECT_EQ(appearanceTextureOffset(0, 1), size_t{512 * 512 * 4});
+    EXPECT_EQ(appearanceTextureOffset(1, 0), size_t{349525 * 4});
 }
 
-TEST_F(LookTextures, AreDeterministic) {
-    const auto again = bakeLookTextures(std::pmr::new_delete_resource());
+TEST_F(AppearanceTextures, AreDeterministic) {
+    const auto again = bakeAppearanceTextures(std::pmr::new_delete_resource());
     EXPECT_EQ(again, *bytes_);
 }
 
-TEST_F(LookTextures, TileWithoutASeam) {
+TEST_F(AppearanceTextures, TileWithoutASeam) {
     // Across the edge the smooth channels change no more than elsewhere.
     for (const auto& [layer, channel] : {std::pair{0u, 0u}, {0u, 2u}, {1u, 3u}}) {
         double inside = 0, edge = 0;
-        for (uint32_t i = 0; i < kLookTextureSide; ++i) {
+        for (uint32_t i = 0; i < kAppearanceTextureSide; ++i) {
             inside += std::abs(at(layer, 0, 256, i, channel) - at(layer, 0, 257, i, channel)) +
                       std::abs(at(layer, 0, i, 100, channel) - at(layer, 0, i, 101, channel));
             edge += std::abs(at(layer, 0, 511, i, channel) - at(layer, 0, 0, i, channel)) +
@@ -93,8 +94,8 @@ TEST_F(LookTextures, TileWithoutASeam) {
     }
 }
 
-TEST_F(LookTextures, MipsKeepTheMean) {
-    for (uint32_t layer = 0; layer < kLookTextureLayers; ++layer) {
+TEST_F(AppearanceTextures, MipsKeepTheMean) {
+    for (uint32_t layer = 0; layer < kAppearanceTextureLayers; ++layer) {
         for (uint32_t c = 0; c < 4; ++c) {
             double mean = 0;
             for (uint32_t y = 0; y < 512; ++y)
@@ -104,7 +105,7 @@ TEST_F(LookTextures, MipsKeepTheMean) {
     }
 }
 
-TEST_F(LookTextures, NoiseIsCentred) {
+TEST_F(AppearanceTextures, NoiseIsCentred) {
     // fBm has mean 0.5, which the shaders subtract.
     EXPECT_NEAR(at(0, 9, 0, 0, 0), 128, 14);
     EXPECT_NEAR(at(0, 9, 0, 0, 2), 128, 14);

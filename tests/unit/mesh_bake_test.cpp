@@ -12,7 +12,7 @@ using namespace fw;
 using namespace fw::test;
 
 struct Figures {
-    uint32_t width, height, real, forced, open, lost, readerless;
+    uint32_t width, height, real, forced, open, lost, withoutDependents;
     double linkLow, linkHigh;  // 0.1 % and 99.9 %, in texel sides
 };
 
@@ -24,7 +24,7 @@ void expectFigures(const BurnDomain& d, const Figures& f, double rimShare) {
     EXPECT_EQ(f.forced, d.report.forcedTexels);
     EXPECT_EQ(f.open, d.report.linksOpen);
     EXPECT_EQ(f.lost, d.report.linksLost);
-    EXPECT_EQ(f.readerless, d.report.readerless);
+    EXPECT_EQ(f.withoutDependents, d.report.withoutDependents);
     EXPECT_NEAR(rimShare, double(d.report.rimTexels) / d.report.realTexels, 0.006);
     EXPECT_NEAR(1, d.report.texelArea / d.report.meshArea, 1e-6);
     std::vector<double> lengths;
@@ -75,7 +75,7 @@ TEST(MeshBake, Bunny4k) {
         expectSound(other);
         EXPECT_NEAR(1, other.report.texelArea / other.report.meshArea, 1e-6) << density;
         EXPECT_EQ(0u, neverReached(other, firstReal(other))) << density;
-        EXPECT_EQ(0u, other.report.readerless) << density;
+        EXPECT_EQ(0u, other.report.withoutDependents) << density;
     }
 }
 
@@ -119,7 +119,7 @@ void bakeLarge(const char* name) {
     EXPECT_LE(d.height, 1024u);
     EXPECT_GT(d.texelCount(), 900u * 1024u) << "the density should fill the atlas";
     EXPECT_LE(d.report.aspectP99, 2.0);
-    EXPECT_EQ(0u, d.report.readerless);
+    EXPECT_EQ(0u, d.report.withoutDependents);
     EXPECT_EQ(0u, neverReached(d, firstReal(d)));
     std::printf("[   FIGURE ] %s: %u x %u, %u texels, %u charts, baked in %.0f ms (limit 5000)\n",
                 name, d.width, d.height, d.report.realTexels, d.report.charts, milliseconds);
@@ -155,7 +155,7 @@ TEST(MeshBake, ConfettiAtlas) {  // every triangle is its own chart, legs down t
         EXPECT_EQ(mesh.triangleCount(), d.report.charts);
         EXPECT_NEAR(1, d.report.texelArea / d.report.meshArea, 1e-6);
         EXPECT_EQ(0u, neverReached(d, firstReal(d)));
-        EXPECT_EQ(0u, d.report.readerless) << "fire lit there could not spread";
+        EXPECT_EQ(0u, d.report.withoutDependents) << "fire lit there could not spread";
         // Our own packing of the same pieces.
         input.trustUvs = false;
         input.uvs = {};
@@ -175,7 +175,7 @@ TEST(MeshBake, StripAtlas) {
         SCOPED_TRACE(width);
         expectSound(d);
         EXPECT_EQ(0u, neverReached(d, firstReal(d)));
-        EXPECT_EQ(0u, d.report.readerless);
+        EXPECT_EQ(0u, d.report.withoutDependents);
     }
 }
 

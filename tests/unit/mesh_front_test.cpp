@@ -196,7 +196,7 @@ TEST(MeshFront, SeamDelaysOnRealMeshesAreSmall) {
         if (!c.unwrap) mesh.uvs.clear();
         const BurnDomain d = domainOf(mesh, c.density, false);
         EXPECT_LE(d.report.aspectP99, 2.0);
-        EXPECT_EQ(0u, d.report.readerless) << "fire lit there could not spread";
+        EXPECT_EQ(0u, d.report.withoutDependents) << "fire lit there could not spread";
         FrontRig rig(d, {.rate = kRate});
         lightAt(rig, d, texelNear(d, {0, 0.6, 0.2}));
         const double jump = worstSeamJump(d, rig);

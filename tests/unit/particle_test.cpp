@@ -115,9 +115,9 @@ TEST(Particles, AreBornAlongAMovingEmitterButNotAcrossATeleport) {
 }
 
 TEST(Particles, PowerSetsUnspecifiedParameters) {
-    components::EmitterLook last = components::emitterLook(fireDef(5));
+    components::EmitterAppearance last = components::emitterAppearance(fireDef(5));
     for (const float power : {50.0f, 500.0f, 5000.0f}) {
-        const components::EmitterLook look = components::emitterLook(fireDef(power));
+        const components::EmitterAppearance look = components::emitterAppearance(fireDef(power));
         EXPECT_GT(look.rate, last.rate);
         EXPECT_GT(look.size0, last.size0);
         EXPECT_GT(look.speed, last.speed);
@@ -129,7 +129,7 @@ TEST(Particles, PowerSetsUnspecifiedParameters) {
     def.rate = 7;
     def.size0 = 0.5f;
     def.life = 3;
-    const components::EmitterLook own = components::emitterLook(def);
+    const components::EmitterAppearance own = components::emitterAppearance(def);
     EXPECT_EQ(7, own.rate);
     EXPECT_EQ(0.5f, own.size0);
     EXPECT_EQ(3, own.life);

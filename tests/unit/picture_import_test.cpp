@@ -8,7 +8,7 @@
 #include "support/sanitized.h"
 
 #include "finish.h"
-#include "volume/look.h"
+#include "volume/appearance.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ class PictureImport : public testing::Test {
 
 volume::Profile bonfire() {
     volume::Profile p;
-    volume::paintLook(volume::presetDef(volume::FlamePreset::Bonfire).look, p);
+    volume::paintLook(volume::presetDef(volume::FlamePreset::Bonfire).appearance, p);
     return p;
 }
 

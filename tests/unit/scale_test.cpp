@@ -1,6 +1,6 @@
 // Cost must follow moving and burning objects: boxes found by place, lists per object, balls over
 // whole objects. Work is counted, never timed.
-#include "components/remote.h"
+#include "components/exchange_object.h"
 #include "core/error.h"
 #include "core/growth.h"
 #include "fire/presets.h"

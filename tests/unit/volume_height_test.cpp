@@ -22,13 +22,13 @@ struct BurningFlame {
     Profile profile;
     explicit BurningFlame(const FlameDef& def) {
         startFlame(flame, def, air);
-        paintLook(def.look, profile);
+        paintLook(def.appearance, profile);
     }
 };
 
 FlameDef defOf(FlamePreset preset, float power, float diameter) {
     FlameDef d;
-    d.look = presetDef(preset).look;
+    d.appearance = presetDef(preset).appearance;
     d.power = power, d.diameter = diameter;
     return d;
 }

@@ -84,7 +84,7 @@ struct Spread {
 Flame burning(FlamePreset preset, const FlameAir& air) {
     const FlamePresetDef p = presetDef(preset);
     FlameDef d;
-    d.look = p.look, d.power = p.power, d.diameter = p.diameter;
+    d.appearance = p.appearance, d.power = p.power, d.diameter = p.diameter;
     Flame f;
     startFlame(f, d, air);
     return f;
@@ -112,7 +112,7 @@ double risen(const std::vector<Side>& all, int from, int to) {
     return rows;
 }
 
-TEST(VolumeLook, TonguesRiseWithTheGasAndDetach) {
+TEST(VolumeAppearance, TonguesRiseWithTheGasAndDetach) {
     for (const FlamePreset preset : kTurbulent) {
         if (kSanitized && preset != FlamePreset::Torch) continue;
         Flame f = burning(preset, {});
@@ -137,7 +137,7 @@ TEST(VolumeLook, TonguesRiseWithTheGasAndDetach) {
 }
 
 // In any wind, the lowest part always burns over its bed.
-TEST(VolumeLook, TheBaseStaysInPlace) {
+TEST(VolumeAppearance, TheBaseStaysInPlace) {
     for (const FlamePreset preset : kTurbulent) {
         if (kSanitized && preset != FlamePreset::Torch) continue;
         for (const float wind : {0.0f, 3.0f}) {
@@ -171,7 +171,7 @@ TEST(VolumeLook, TheBaseStaysInPlace) {
     }
 }
 
-TEST(VolumeLook, IsBrightestLowAndWhiteByExposureOnly) {
+TEST(VolumeAppearance, IsBrightestLowAndWhiteByExposureOnly) {
     for (const FlamePreset preset : kTurbulent) {
         if (kSanitized && preset != FlamePreset::Torch) continue;
         Flame f = burning(preset, {});
@@ -214,7 +214,7 @@ double alike(const std::vector<float>& a, const std::vector<float>& b) {
     return both / std::sqrt(std::max(aa * bb, 1e-12));
 }
 
-TEST(VolumeLook, DoesNotRepeatWithinAMinute) {
+TEST(VolumeAppearance, DoesNotRepeatWithinAMinute) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (const FlamePreset preset : kTurbulent) {
@@ -278,8 +278,8 @@ double crossings(const Shown& f, float s) {
     return double(count) / double(length);
 }
 
-TEST(VolumeLook, TongueWidthDoesNotDependOnTheHeight) {
-    const FlameLook look = presetDef(FlamePreset::CampFire).look;
+TEST(VolumeAppearance, TongueWidthDoesNotDependOnTheHeight) {
+    const FlameAppearance look = presetDef(FlamePreset::CampFire).appearance;
     const auto perMetre = [&](float diameter, float height) {
         double sum = 0;
         Shown f(look, 60.0f, diameter, height);
@@ -296,7 +296,7 @@ TEST(VolumeLook, TongueWidthDoesNotDependOnTheHeight) {
 }
 
 // Flame and smoke end before the bounds of the drawn tube.
-TEST(VolumeLook, BoundsOfTheTubeAreInvisible) {
+TEST(VolumeAppearance, BoundsOfTheTubeAreInvisible) {
     std::mt19937 random(4);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
@@ -315,14 +315,15 @@ TEST(VolumeLook, BoundsOfTheTubeAreInvisible) {
             soot = std::max(soot, in.soot);
             edge = std::max(edge, medium(fw::gpu::kFlameReach - 0.01f, 1.8f * unit(random)).soot);
             edge = std::max(edge, medium(unit(random), fw::gpu::kFlameTop - 0.01f).soot);
-            if (f.look.smoke <= 0) continue;
+            if (f.appearance.smoke <= 0) continue;
             // Smoke reaches to where its density falls to 0.01.
-            const float y = 0.6f + (f.look.smokeTop - 0.6f) * unit(random);
+            const float y = 0.6f + (f.appearance.smokeTop - 0.6f) * unit(random);
             const float wide =
                 0.45f * f.size.diameter + 0.16f * std::max(y - 0.6f, 0.0f) * f.record.high.w;
             smoke = std::max(smoke, medium(0.5f * wide / r * unit(random), y).smoke);
             end = std::max(end, medium(1.9f * wide / r, y).smoke);
-            end = std::max(end, medium(wide / r * unit(random), f.look.smokeTop - 0.01f).smoke);
+            end =
+                std::max(end, medium(wide / r * unit(random), f.appearance.smokeTop - 0.01f).smoke);
             end = std::max(end, medium(wide / r * unit(random), 0.61f).smoke);
         }
         EXPECT_GT(soot, 0.0f);
@@ -333,14 +334,14 @@ TEST(VolumeLook, BoundsOfTheTubeAreInvisible) {
 
 // A flame's custom colours blend from edge to core with the gas temperature, at equal brightness.
 // With one colour the hottest part is slightly paler.
-TEST(VolumeLook, CustomColoursBlendFromEdgeToCore) {
-    FlameLook look = presetDef(FlamePreset::CampFire).look;
+TEST(VolumeAppearance, CustomColoursBlendFromEdgeToCore) {
+    FlameAppearance look = presetDef(FlamePreset::CampFire).appearance;
     const vec3 edge(0.05f, 0.1f, 0.9f), core(0.9f, 0.2f, 0.6f),
         kLuminance(0.2126f, 0.7152f, 0.0722f);
     look.tint[0] = edge.r, look.tint[1] = edge.g, look.tint[2] = edge.b, look.tint[3] = 1;
     const auto hue = [&](float kelvin) {
         const fw::gpu::FlameRecord record = describeFlame(look, {60, 0.6f, 1, 1}, {}, 1);
-        FlameLook real = look;
+        FlameAppearance real = look;
         real.tint[3] = 0;
         const auto glow = describeFlame(real, {60, 0.6f, 1, 1}, {}, 1);
         return fw::gpu::flameRadiance(record, kelvin) /
@@ -362,7 +363,7 @@ TEST(VolumeLook, CustomColoursBlendFromEdgeToCore) {
 
 // The offset of samples within a ray's step leaves no layers: the same picture on average, and no
 // row brighter.
-TEST(VolumeLook, SampleOffsetsLeaveNoLayers) {
+TEST(VolumeAppearance, SampleOffsetsLeaveNoLayers) {
     Flame f = burning(FlamePreset::CampFire, {});
     for (int k = 0; k < 20; ++k) advanceFlame(f, {}, 0.05);
     const Shown shown(f);
@@ -384,7 +385,7 @@ TEST(VolumeLook, SampleOffsetsLeaveNoLayers) {
 
 // Adjacent pixels offset their samples differently; a tip seen by only some of them would look like
 // beads.
-TEST(VolumeLook, TipsDoNotBreakIntoBeads) {
+TEST(VolumeAppearance, TipsDoNotBreakIntoBeads) {
     for (const FlamePreset preset : {FlamePreset::Bonfire, FlamePreset::HouseFire}) {
         Flame f = burning(preset, {});
         double light = 0, apart = 0;

@@ -181,7 +181,7 @@ TEST(VolumeMarch, MarchesFromInsideAndUpToAWall) {
 
 TEST(VolumeMarch, NoiseIsInMetres) {
     // The same fire ten times as large looks the same from ten times the distance.
-    const FlameLook look = presetDef(FlamePreset::CampFire).look;
+    const FlameAppearance look = presetDef(FlamePreset::CampFire).appearance;
     Shown small(look, 60.0f, 0.6f, 0.6f), large(look, 60.0f, 6.0f, 6.0f);
     EXPECT_NEAR(large.record.lambda / small.record.lambda, 10.0f, 1e-3f);
     // A flame twice as high over the same bed has tongues of the same width.
@@ -258,7 +258,7 @@ TEST(VolumeMarch, NoiseDoesNotRepeatWithinAMinute) {
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
         Shown f = Shown::preset(FlamePreset(k));
         FlameScroll s;
-        advanceScroll(s, f.look, f.record, 1.0);
+        advanceScroll(s, f.appearance, f.record, 1.0);
         for (const double cells : {s.octaves[0], s.warp, s.column})
             EXPECT_LT(60.0 * cells, double(fw::gpu::kFlameWrap)) << presetName(FlamePreset(k));
     }

@@ -102,7 +102,7 @@ TEST(VolumeMotion, LeansInWindAndRecovers) {
 TEST(VolumeMotion, SurvivesFastMotionAndTeleports) {
     Flame f;
     FlameDef d = campFire();
-    d.look = presetDef(FlamePreset::Torch).look;
+    d.appearance = presetDef(FlamePreset::Torch).appearance;
     d.power = 5.0f, d.diameter = 0.13f;
     startFlame(f, d, {});
     double time = 0;

@@ -63,7 +63,7 @@ TEST(VolumePictures, EveryPresetHasItsAppearance) {
             std::string file = name;
             std::replace(file.begin(), file.end(), ' ', '_');
             writePpm(std::string(folder) + "/" + file + ".ppm", image, width, height, 1.5f,
-                     f.look.tint[3] > 0.0f ? vec3(1.0f) : vec3(1.0f, 1.25f, 1.6f));
+                     f.appearance.tint[3] > 0.0f ? vec3(1.0f) : vec3(1.0f, 1.25f, 1.6f));
         }
         rules.smoke = false;
         image = picture(f, camera, width, height, rules, [](vec3, vec3) {
@@ -85,7 +85,7 @@ TEST(VolumePictures, EveryPresetHasItsAppearance) {
             }
         ASSERT_GT(light, 0.0) << name;
         // Turbulent flames are brightest in the lower half.
-        if (f.look.painter == Painter::Fire) {
+        if (f.appearance.painter == Painter::Fire) {
             EXPECT_LT(moment / light, 0.5 * double(std::max(f.size.height, f.size.diameter)))
                 << name;
         }
@@ -121,7 +121,7 @@ TEST(VolumePictures, WritesStripsOfMovingFlames) {
         if (what == "wall") air.colliders = std::span(&wall, 1);
         std::vector<Flame> flames(n);
         for (uint32_t k = 0; k < n; ++k) {
-            d.look = p.look, d.power = parts[k].power, d.diameter = parts[k].diameter,
+            d.appearance = p.appearance, d.power = parts[k].power, d.diameter = parts[k].diameter,
             d.seed = 1 + k;
             d.position = vec3(parts[k].x, 0, parts[k].z);
             startFlame(flames[k], d, air);

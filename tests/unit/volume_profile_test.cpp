@@ -2,7 +2,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "support/sanitized.h"
-#include "volume/look.h"
+#include "volume/appearance.h"
 #include "volume/profile.h"
 #include "volume_scene.h"
 
@@ -25,7 +25,7 @@ using volume_scene::failure;
 
 Profile painted() {
     Profile p;
-    paintLook(presetDef(FlamePreset::CampFire).look, p);
+    paintLook(presetDef(FlamePreset::CampFire).appearance, p);
     return p;
 }
 

@@ -15,7 +15,7 @@ using namespace fw::volume;
 
 inline FlameDef campFire() {
     FlameDef d;
-    d.look = presetDef(FlamePreset::CampFire).look;
+    d.appearance = presetDef(FlamePreset::CampFire).appearance;
     return d;
 }
 
@@ -31,7 +31,7 @@ std::string failure(const Do& act) {
 }
 
 struct Shown {
-    FlameLook look;
+    FlameAppearance look;
     FlameSize size;
     FlameScroll scroll;
     uint32_t seed = 1;
@@ -39,7 +39,7 @@ struct Shown {
     fw::gpu::FlameRecord record{};
     FlameNodes nodes{};
 
-    Shown(const FlameLook& l, float power, float diameter, float height) : look(l) {
+    Shown(const FlameAppearance& l, float power, float diameter, float height) : look(l) {
         size = {power, diameter, height, 1.0f};
         paintLook(look, *profile);
         describe();
@@ -49,7 +49,7 @@ struct Shown {
         const FlamePresetDef d = presetDef(preset);
         std::array<Flamelet, kMaxFlamelets> parts;
         splitFire(d.power, d.diameter, parts);
-        return {d.look, parts[0].power, parts[0].diameter, parts[0].height};
+        return {d.appearance, parts[0].power, parts[0].diameter, parts[0].height};
     }
     void describe() {
         record = describeFlame(look, size, scroll, seed);
@@ -62,7 +62,7 @@ struct Shown {
         curve.set(points, vec3(0, 1, 0));
         placeFlameNodes(curve, topOf(record), nodes);
     }
-    explicit Shown(const Flame& flame) : look(flame.def.look) {  // as it burns now
+    explicit Shown(const Flame& flame) : look(flame.def.appearance) {  // as it burns now
         size = flame.size;
         paintLook(look, *profile);
         record = flame.record;

@@ -129,9 +129,9 @@ TEST(VolumeSmoke, ByNightTheFlameLightsTheSmoke) {
          {FlamePreset::CampFire, FlamePreset::Bonfire, FlamePreset::HouseFire}) {
         const FlamePresetDef p = presetDef(preset);
         FlameDef def;
-        def.look = p.look, def.power = p.power, def.diameter = p.diameter;
+        def.appearance = p.appearance, def.power = p.power, def.diameter = p.diameter;
         Profile profile;
-        paintLook(def.look, profile);
+        paintLook(def.appearance, profile);
         Flame flame;
         startFlame(flame, def, {});
         for (const float high : {1.0f, 1.5f, 2.0f}) {  // heights relative to the visible flame
@@ -161,7 +161,7 @@ TEST(VolumeSmoke, ByNightTheFlameLightsTheSmoke) {
 TEST(VolumeSmoke, ByNightSmokeIsADimBrownVeil) {
     const FlamePresetDef p = presetDef(FlamePreset::HouseFire);
     FlameDef def;
-    def.look = p.look, def.power = p.power, def.diameter = p.diameter;
+    def.appearance = p.appearance, def.power = p.power, def.diameter = p.diameter;
     Flame flame;
     startFlame(flame, def, {});
     MarchRules rules;

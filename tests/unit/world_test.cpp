@@ -395,9 +395,10 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
 
 // For commands of a log or a server: one occluder list names each object once.
 TEST_F(PlannedWorld, OccluderCommandsNameEachObjectOnce) {
-    world->persistence().apply(world::AddShieldObject{id.index1, false});
-    EXPECT_THROW(world->persistence().apply(world::AddShieldObject{id.index1, false}), core::Error);
-    world->persistence().apply(world::AddShieldObject{0, true});
+    world->persistence().apply(world::AddOcclusionObject{id.index1, false});
+    EXPECT_THROW(world->persistence().apply(world::AddOcclusionObject{id.index1, false}),
+                 core::Error);
+    world->persistence().apply(world::AddOcclusionObject{0, true});
 }
 
 TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirFrame) {

@@ -4,7 +4,7 @@
 #include "whole_file.h"
 
 #include "core/error.h"
-#include "volume/look.h"
+#include "volume/appearance.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -69,7 +69,8 @@ void CpuBackend::State::allocateBurnBudget(uint32_t maxTiles, uint32_t now) noex
         // A tile that the host lit meanwhile needs no allocation, and counts.
         if ((tiles[request.w].flag & kTileBurning) == 0 &&
             remainingTiles(uint32_t(burnList.size()) + goneBurning, maxTiles) != 0 &&
-            (!limited || remainingTiles(object.counters.burningTiles, object.remote.maxTiles) != 0))
+            (!limited ||
+             remainingTiles(object.counters.burningTiles, object.exchangeObject.maxTiles) != 0))
             burning(request.w);
     }
     requests.clear();
@@ -238,7 +239,8 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
             return;
         }
         if (holdsTile(tile.flag, scheduledBurning, step.rules.maxTiles,
-                      object.counters.burningTiles, object.remote.flags, object.remote.maxTiles)) {
+                      object.counters.burningTiles, object.exchangeObject.flags,
+                      object.exchangeObject.maxTiles)) {
             if (listed) append(listOut, worldTile);
             return;
         }
@@ -520,8 +522,8 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     FW_ASSERT(step.substepShift < 32, "substep shift %u", step.substepShift);
     FW_ASSERT(!step.exchange || step.reduce, "an exchange needs the counts of a reduction");
     FW_ASSERT(!isRequestPass && requests.empty(), "%zu tiles still request", requests.size());
-    if (step.remote) placeExchangeObject(*step.remote);
-    if (step.shield) setOcclusionPush(*step.shield);
+    if (step.exchangeUpdate) placeExchangeObject(*step.exchangeUpdate);
+    if (step.occlusionUpdate) setOcclusionPush(*step.occlusionUpdate);
     capped = step.capped;
     const uint32_t most = step.rules.maxTiles;
     if (!step.materials.empty()) {
@@ -622,8 +624,8 @@ void CpuBackend::run(const FramePlan& plan) {
     // Everything that can fail comes first.
     ReadbackStore& store = s.reserveReadback(plan);
     for (const StepPlan& step : plan.steps) {
-        if (step.remote) s.reserveExchange(*step.remote);
-        if (step.shield) s.reserveOcclusion(*step.shield);
+        if (step.exchangeUpdate) s.reserveExchange(*step.exchangeUpdate);
+        if (step.occlusionUpdate) s.reserveOcclusion(*step.occlusionUpdate);
     }
 
     s.showRestored();

@@ -40,7 +40,7 @@ void CpuBackend::State::placeExchangeObject(const ExchangeUpdate& update) noexce
     FW_ASSERT(update.occluders.size() <= occluders.capacity(), "%zu of %zu occluders",
               update.occluders.size(), occluders.capacity());
     for (const ExchangeUpdate::Placed& placed : update.objects)
-        if (CpuObject* object = find(placed.object)) object->remote = placed.record;
+        if (CpuObject* object = find(placed.object)) object->exchangeObject = placed.record;
     copyRanges(update.neighbours, update.neighbourRanges, neighbours);
     copyRanges(update.links, update.linkRanges, links);
     occluders.assign(update.occluders.begin(), update.occluders.end());
@@ -54,8 +54,8 @@ void CpuBackend::State::setOcclusionPush(const OcclusionUpdate& update) noexcept
     FW_ASSERT(update.words.size() <= occlusionCells.capacity(), "%zu of %zu words",
               update.words.size(), occlusionCells.capacity());
     occlusionCells.assign(update.words.begin(), update.words.end());
-    shield = update;
-    shield.words = occlusionCells;
+    occlusion = update;
+    occlusion.words = occlusionCells;
 }
 
 void CpuBackend::State::litFrom(CpuObject& object, uint32_t by) noexcept {
@@ -78,7 +78,7 @@ struct ExchangePass : PassBody {
         const CpuBackend::State& backend;
         const ExchangeObject& operator[](uint32_t slot) const noexcept {
             const CpuObject* object = backend.find(slot);
-            return object ? object->remote : kNoExchange;
+            return object ? object->exchangeObject : kNoExchange;
         }
     } exchangeObjects{backend};
     struct Objects {
@@ -111,7 +111,7 @@ struct ExchangePass : PassBody {
         return backend.at(slot).domain->texelsOf(tile)[lane];
     }
     [[nodiscard]] const ExchangeTile& exchangeTileOf(uint32_t slot, uint32_t tile) const noexcept {
-        return backend.remoteTileOf(backend.at(slot), tile);
+        return backend.exchangeTileOf(backend.at(slot), tile);
     }
     [[nodiscard]] uint32_t neighbourOf(uint32_t slot, uint32_t n) const noexcept {
         FW_ASSERT(exchangeObjects[slot].neighbourFirst + n < neighbours.size(), "neighbour %u", n);
@@ -187,7 +187,7 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
     pass.push.now = now;
     pass.push.count = uint32_t(objects.size());
     pass.push.occluders = uint32_t(occluders.size());
-    gpu::setOcclusionPush(shield, pass.push);
+    gpu::setOcclusionPush(occlusion, pass.push);
     const ExchangePush& rules = pass.push;
     for (core::Owned<CpuObject>& object : objects)
         if (object && std::exchange(object->gives, false))

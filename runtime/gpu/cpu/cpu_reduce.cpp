@@ -9,7 +9,7 @@
 namespace fw::gpu::cpu {
 namespace {
 
-constexpr float kLightCell = 1.0f;      // m: tiles of one object within a cell make one light
+constexpr float kClusterSize = 1.0f;    // m: tiles of one object within a cell make one light
 constexpr uint32_t kLightSlots = 1024;  // open hash; a key without a free slot joins the last one
 
 struct Cell {
@@ -24,7 +24,7 @@ uint64_t cellKey(const BurnTile& tile) {
     uint64_t key = tile.object;
     for (int i = 0; i < 3; ++i)
         key = key * 0x9E3779B97F4A7C15ull +
-              uint64_t(int64_t(std::floor(tile.positionArea[i] / kLightCell)) + (1 << 20));
+              uint64_t(int64_t(std::floor(tile.positionArea[i] / kClusterSize)) + (1 << 20));
     return key | 1;
 }
 

@@ -83,17 +83,17 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     s.neighbours.clear();
     s.links.clear();
     s.occluders.clear();
-    s.shield = {};
+    s.occlusion = {};
     for (uint32_t slot = 0; slot < s.objects.size(); ++slot) {
         if (!s.objects[slot]) continue;
         s.resetObject(*s.objects[slot], slot);
-        s.objects[slot]->remote = {};
+        s.objects[slot]->exchangeObject = {};
     }
     for (const RestoredObject& one : restored) {
         const ObjectImage& image = one.image;
         CpuObject& object = s.at(image.object);
         object.counters = image.counters;
-        if (one.rests) continue;
+        if (one.sleeps) continue;
         std::copy_n(one.materials, kMaterialsPerObject, object.materials.begin());
         object.record.window = one.window;
         object.record.substepShift = one.substepShift;

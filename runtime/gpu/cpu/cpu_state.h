@@ -29,7 +29,7 @@ struct CpuObject {
     std::pmr::vector<uvec2> heat;         // packed HeatTexel, one per texel; empty: none
     std::array<HeatMaterial, kMaterialsPerObject> heatMaterials{};
     uint32_t extensionParity = 0;
-    ExchangeObject remote{};               // without kExchangeLive until its first update
+    ExchangeObject exchangeObject{};       // without kExchangeLive until its first update
     std::pmr::vector<FireSource> sources;  // by cell, see mesh/exchange_tiles.h
     bool gives = false;                    // some source differs from FireSource{}
 
@@ -46,7 +46,9 @@ struct CpuObject {
         return heatMaterials[domain->texels[texel].materialFlags & (kMaterialsPerObject - 1)];
     }
     // Whether other objects' fires reach it, and its fire reaches them.
-    [[nodiscard]] bool exchanges() const noexcept { return (remote.flags & kExchangeLive) != 0; }
+    [[nodiscard]] bool exchanges() const noexcept {
+        return (exchangeObject.flags & kExchangeLive) != 0;
+    }
     void addIgnitions(uint32_t texels, uint32_t tick) noexcept {
         counters.ignited += texels;
         counters.lastIgnition = std::max(counters.lastIgnition, tick);
@@ -216,8 +218,8 @@ struct CpuBackend::State {
     void reserveOcclusion(const OcclusionUpdate& update);  // throws std::bad_alloc
     void setOcclusionPush(const OcclusionUpdate& update) noexcept;
     void exchange(const ExchangePush& given, uint32_t now) noexcept;
-    [[nodiscard]] const ExchangeTile& remoteTileOf(const CpuObject& object,
-                                                   uint32_t local) const noexcept {
+    [[nodiscard]] const ExchangeTile& exchangeTileOf(const CpuObject& object,
+                                                     uint32_t local) const noexcept {
         FW_ASSERT(object.mesh < exchangeTiles.size() && local < exchangeTiles[object.mesh].size(),
                   "tile %u of mesh %u", local, object.mesh);
         return exchangeTiles[object.mesh][local];
@@ -275,7 +277,7 @@ struct CpuBackend::State {
     std::pmr::vector<uint32_t> neighbours{memory};
     std::pmr::vector<ContactLink> links{memory};
     std::pmr::vector<HeatOccluder> occluders{memory};
-    OcclusionUpdate shield;  // its words are in occlusionCells
+    OcclusionUpdate occlusion;  // its words are in occlusionCells
     std::pmr::vector<uint32_t> occlusionCells{memory};
     std::array<Room, kMaxRooms> rooms{};
     std::array<RoomAir, kMaxRooms> roomAir{};

@@ -1,6 +1,6 @@
 // The one place that decides who sorts things that blend, farthest first: the host or the device.
 #pragma once
-#include "shared/look.h"
+#include "shared/appearance.h"
 
 #include <algorithm>
 #include <cstdint>

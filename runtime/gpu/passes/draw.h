@@ -4,10 +4,10 @@
 #include "flamewright/flamewright.h"
 #include "gpu/passes/pass.h"
 #include "lod/volumes.h"
+#include "shared/appearance.h"
 #include "shared/field.h"
 #include "shared/half.h"
 #include "shared/heat.h"
-#include "shared/look.h"
 #include "shared/volume_draw.h"
 
 #include <array>
@@ -36,8 +36,8 @@ struct ViewInput {  // of ViewParams
 [[nodiscard]] ViewParams makeViewParams(const ViewInput& input) noexcept;
 
 // Given by the layer above, which knows how things look.
-constexpr uint32_t kLookTextureLayers = 3;
-struct LookSources {
+constexpr uint32_t kAppearanceTextureLayers = 3;
+struct AppearanceSources {
     std::span<const MaterialAppearance> table;  // by FwMaterialPreset
     // RGBA8, 512^2, layer by layer, each with its 10 mips, largest first. Copied.
     std::span<const std::byte> textures;
@@ -97,7 +97,7 @@ struct SurfaceStep {  // a draw of an item
 // All draws of `items`, by phase, pass and item. `out` has room for kMostSurfaceSteps of each.
 constexpr uint32_t kMostSurfaceSteps = 3;
 void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep>& out) noexcept;
-[[nodiscard]] MaterialFamily familyOf(uint32_t look) noexcept;  // FwMaterialPreset
+[[nodiscard]] MaterialFamily familyOf(uint32_t appearance) noexcept;  // FwMaterialPreset
 // Every pass that may draw such a material, whatever becomes of it.
 [[nodiscard]] DrawPassSet surfacePasses(const BurnMaterial& material, bool image);
 // `edge`: m, mean edge of the object's triangles.

@@ -39,7 +39,7 @@ struct SoftShaders {
 // A pass that blends effects, drawn at half resolution where the target asks for it.
 constexpr DrawPass softPass(const char* name, const char* vertex, SoftShaders shaders,
                             uint32_t pushBytes = 0, Textures textures1 = Textures::none,
-                            Textures textures2 = Textures::looks) {
+                            Textures textures2 = Textures::appearances) {
     return {.name = name,
             .vertexShader = vertex,
             .fragmentShader = shaders.fragment,

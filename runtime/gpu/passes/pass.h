@@ -2,11 +2,11 @@
 // (compute) or draw_passes.cpp (draws). Layouts, barriers, timers and labels follow from the row
 // and from its shaders' declarations.
 #pragma once
+#include "shared/appearance.h"
 #include "shared/burn.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
-#include "shared/look.h"
 #include "shared/particle.h"
 #include "shared/refine.h"
 #include "shared/spark.h"
@@ -97,7 +97,7 @@ enum class VertexInput : uint8_t {
     none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers
     mesh,  // mesh::RenderVertex: 2 atlas vec2, 3 texture uv vec2, 4 detail vec2, 5 tint RGBA8 as
            // vec4, 6 material (refined: slot) uint, 8 rest position vec3; ShownVertex, or the
-           // mesh's: 0 position vec3, 1 normal uint, 7 lead float
+           // mesh's: 0 position vec3, 1 normal uint, 7 burn-through offset float
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
 // constant: a mix of all that is there with the blend constant, whatever its depth.
@@ -123,13 +123,13 @@ enum class DrawnIn : uint8_t {
 // Textures that a pass binds in set 1 or 2, binding 0.
 enum class Textures : uint8_t {
     none,
-    ofItem,     // sampler2D: an object's base colour, white if it has none
-    flipbooks,  // sampler2D
-    hostColor,  // sampler2D: the host's copy of its target
-    looks,      // sampler2DArray: the look textures
-    profiles,   // sampler2DArray: the fire profiles
-    halfColor,  // sampler2D
-    halfDepth,  // sampler2D: depth and tiles of half resolution
+    ofItem,       // sampler2D: an object's base colour, white if it has none
+    flipbooks,    // sampler2D
+    hostColor,    // sampler2D: the host's copy of its target
+    appearances,  // sampler2DArray: the appearance textures
+    profiles,     // sampler2DArray: the fire profiles
+    halfColor,    // sampler2D
+    halfDepth,    // sampler2D: depth and tiles of half resolution
 };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
@@ -155,7 +155,7 @@ struct DrawPass {
     const char* const* texelShaders = nullptr;
     AtHalf atHalf = AtHalf::same;
     DrawnIn drawnIn = DrawnIn::flames;
-    Textures textures1 = Textures::none, textures2 = Textures::looks;
+    Textures textures1 = Textures::none, textures2 = Textures::appearances;
     // Instead of vertexShader and fragmentShader in a target of several samples; null: the same.
     const char* multisampledVertex = nullptr;
     const char* multisampledFragment = nullptr;

@@ -1,5 +1,5 @@
 // Surfaces of burnable meshes, one draw per object and material. Pipelines differ in the features
-// that they can draw, not in the result: see kSurface... in shared/look.h.
+// that they can draw, not in the result: see kSurface... in shared/appearance.h.
 #include "core/assert.h"
 #include "gpu/extension.h"
 
@@ -23,8 +23,8 @@ constexpr float kSmallEdge = 0.03f;
 
 }  // namespace
 
-MaterialFamily familyOf(uint32_t look) noexcept {
-    switch (look) {
+MaterialFamily familyOf(uint32_t appearance) noexcept {
+    switch (appearance) {
         case FW_MATERIAL_PAINTED_WOOD:
             return MaterialFamily::paint;
         case FW_MATERIAL_NEWSPAPER:
@@ -48,7 +48,8 @@ MaterialFamily familyOf(uint32_t look) noexcept {
 DrawPassSet surfacePasses(const BurnMaterial& material, bool image) {
     DrawPassSet passes = 0;
     const auto add = [&](SurfaceState state, Cull cull) {
-        passes |= DrawPassSet(1) << surfacePass({familyOf(material.look), image, state, cull});
+        passes |=
+            DrawPassSet(1) << surfacePass({familyOf(material.appearance), image, state, cull});
     };
     for (const Cull cull : {Cull::back, Cull::front}) {
         add(SurfaceState::fresh, cull);
@@ -73,7 +74,7 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     draw.timeScale = material.timeScale;
     draw.thickness = material.thickness;
     draw.horizon = float(object.horizon) / float(kTicksPerSecond);
-    draw.look = material.look;
+    draw.appearance = material.appearance;
     draw.stateBase = object.stateBase;
     draw.size = object.width | object.height << 16;
     draw.flags = object.flags & kObjectsOwn;

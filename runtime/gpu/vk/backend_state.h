@@ -80,7 +80,7 @@ struct BackendState {
         return !simulation.burnEmpty || particles.shows();
     }
     [[nodiscard]] bool showsAnything() const noexcept {
-        return (surfaces.drawVertices || particles.shows()) && scene.lookTextures.live;
+        return (surfaces.drawVertices || particles.shows()) && scene.appearanceTextures.live;
     }
     // Of a view of `height` px; 0: it was never drawn, `otherwise` px.
     [[nodiscard]] ViewParams paramsOf(const FwView& view, float height,

@@ -109,7 +109,7 @@ void DeformRenderer::addNeeds(BackendState& s, uint32_t slot, uint64_t endTick,
     object.deforms.woke = !object.deforms.now;
     object.deforms.now = deforms(s, slot, endTick);
     if (object.deforms.now) {
-        const uint32_t groups = deformGroups(object.deform.nodeCount);
+        const uint32_t groups = deformGroups(object.deform.particleCount);
         for (uint32_t group = 0; group < groups; ++group)
             needs.deform.nodes += recedes(softSteps, object, group) ? 1 : 0;
         if (object.deform.flags & kDeformShell) {
@@ -160,7 +160,7 @@ Staged DeformRenderer::stageGroups(BackendState& s, FrameRecorder& recorder) con
             if (const ObjectEntry& object = s.scene.objects[i];
                 object.deforms.now && !object.deforms.skinPlus1 &&
                 (tier == ~0u || (object.deform.flags & tier)))
-                append(object, object.deform.nodeCount, tier == ~0u);
+                append(object, object.deform.particleCount, tier == ~0u);
     for (const uint32_t i : s.scene.awake)
         if (s.scene.objects[i].deforms.now)
             append(s.scene.objects[i], s.scene.objects[i].deform.vertexCount);

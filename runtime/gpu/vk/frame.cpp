@@ -361,7 +361,7 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
     const bool looked = !from.empty(), emits = s.particles.shows(), burns = !s.simulation.burnEmpty;
     const bool fieldsShow = looked && !s.particleFields.fieldDraws.empty(),
                marches = looked && !s.flames.volumes.empty();
-    if ((!burns && !marches && !emits && !fieldsShow) || !s.scene.lookTextures.live) return;
+    if ((!burns && !marches && !emits && !fieldsShow) || !s.scene.appearanceTextures.live) return;
     const VkViewport whole{0, 0, 1, 1, 0, 1};
     // A step of an own device has no view: lights alone, which flicker with simulated time.
     FwView none{};

@@ -77,12 +77,12 @@ void addStepNeeds(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
             needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
             if (!needs.dense) wake += wakeGroupsOf(s.scene.objects[update.object]);
         }
-        if (step.remote) addExchangeNeeds(*step.remote, needs);
-        if (step.shield) {
+        if (step.exchangeUpdate) addExchangeNeeds(*step.exchangeUpdate, needs);
+        if (step.occlusionUpdate) {
             needs.placing = true;
             needs.occlusionWords =
-                std::max(needs.occlusionWords, uint32_t(step.shield->words.size()));
-            needs.uploadBytes += uploaded(step.shield->words.size_bytes());
+                std::max(needs.occlusionWords, uint32_t(step.occlusionUpdate->words.size()));
+            needs.uploadBytes += uploaded(step.occlusionUpdate->words.size_bytes());
         }
         needs.exchanges |= step.exchange;
         needs.airs |= step.rooms;
@@ -149,7 +149,7 @@ void choosePasses(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
     addSeenNeeds(s, needs);
     needs.predicting =
         !s.simulation.predictEmpty || (needs.exchanges && needs.burning) || wakes || needs.appears;
-    needs.falling = anyStep && s.scene.lookTextures.live &&
+    needs.falling = anyStep && s.scene.appearanceTextures.live &&
                     (needs.burning || plan.endTick < s.simulation.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
                      needs.extensionRuns || needs.airs || !plan.probes.empty() ||

@@ -23,8 +23,8 @@ struct FrameNeeds {
     uint64_t uploadBytes = 0;             // at most
     uint64_t iterations = 0;              // of all steps
     uint32_t events = 0, wakeGroups = 0;  // of the largest step
-    uint32_t neighbours = 0, links = 0;   // of the largest remote update
-    uint32_t occlusionWords = 0;          // of the largest shield
+    uint32_t neighbours = 0, links = 0;   // of the largest exchange update
+    uint32_t occlusionWords = 0;          // of the largest heat-occlusion grid
     bool placing = false;                 // there is one
     bool exchanges = false;               // fire may come from other objects
     bool airs = false;                    // rooms have a step

@@ -1,4 +1,4 @@
-// Base colours and look textures: images with their mips, and their way to the device.
+// Base colours and appearance textures: images with their mips, and their way to the device.
 #include "core/error.h"
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/device_objects.h"
@@ -183,7 +183,7 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
 void VkBackend::setFlipbooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
                              std::span<const uint32_t> words) {
     BackendState& s = *state_;
-    if (!s.scene.lookTextures.live) return;  // nothing is ever drawn
+    if (!s.scene.appearanceTextures.live) return;  // nothing is ever drawn
     ImageEntry fresh;
     if (width > 0) {
         UploadGuard staged(s.scene.uploads);

@@ -63,7 +63,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.meshTiles = allocate(kPoolMeshTiles, fresh.tiles);
     fresh.slowness = allocate(kPoolSlowness, fresh.tiles);
     fresh.links = allocate(kPoolLinks, domain.links.size() / 8);
-    fresh.readers = allocate(kPoolDependents, domain.dependents.size());
+    fresh.dependents = allocate(kPoolDependents, domain.dependents.size());
     fresh.vertexRange = allocate(kPoolVertices, fresh.vertices);
     fresh.indexRange = allocate(kPoolIndices, fresh.indices);
     const auto bytesOf = [](const auto&... parts) {
@@ -84,7 +84,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     add(FW_BIND_EXCHANGE_TILES, fresh.meshTiles, 1, exchangeTiles);
     add(FW_BIND_SLOWNESS, fresh.slowness, kTileTexels, domain.slowness);
     add(FW_BIND_LINKS, fresh.links, 8, domain.links);
-    add(FW_BIND_DEPENDENTS, fresh.readers, 1, domain.dependents);
+    add(FW_BIND_DEPENDENTS, fresh.dependents, 1, domain.dependents);
     // In the order in which the device has them.
     const auto place = [&](uint32_t resource, const BufferRange& range, const auto& data) {
         return upload.region(resource, range.first() * sizeof(data[0]), bytesOf(data));

@@ -40,7 +40,7 @@ void stageDeformModel(BackendState& s, const mesh::BurnDomain& domain,
                       uint64_t(added.embeddings.first()) * sizeof(DeformEmbedding), embeddingBytes);
     for (size_t i = 0; i < order.vertices.size(); ++i) {
         DeformEmbedding embedding = model.embeddings[order.vertices[i]];
-        number(embedding.node);
+        number(embedding.particle);
         for (uint32_t& vertex : embedding.ring) number(vertex);
         mesh::putQuads(embedding, i, order.vertices.size(), to);
     }
@@ -161,7 +161,7 @@ void fillRecord(const ObjectInit& init, const MeshEntry& mesh, ObjectEntry& fres
     r.tileBase = mesh.meshTiles.first();
     r.worldTileBase = fresh.tiles.first();
     r.linkBase = mesh.links.first();
-    r.dependentBase = mesh.readers.first();
+    r.dependentBase = mesh.dependents.first();
     r.extensionBase = fresh.extensionTiles.first() * kTileTexels * 3;
     r.heatBase = fresh.heatTiles.first() * kTileTexels;
     r.width = mesh.width;
@@ -185,7 +185,7 @@ void fillDeformation(const ObjectInit& init, const MeshEntry& mesh, uint32_t slo
                      ObjectEntry& fresh) noexcept {
     DeformObject& deform = fresh.deform = *init.deform;
     deform.nodeBase = mesh.particles.first();
-    deform.nodeCount = mesh.particles.units();
+    deform.particleCount = mesh.particles.units();
     deform.embeddingBase = mesh.embeddings.first();
     deform.vertexCount = mesh.vertices;
     deform.shownBase = fresh.shown.first();
@@ -205,7 +205,7 @@ void fillDeformation(const ObjectInit& init, const MeshEntry& mesh, uint32_t slo
 }
 
 // Whether frames have nothing to do for it until a change or an event.
-bool rests(const ObjectEntry& object) noexcept {
+bool isSleeping(const ObjectEntry& object) noexcept {
     if (object.recordDirty || object.materialsDirty || object.resetDue) return false;
     if (!object.live) return true;
     const bool reached = object.burn.touched || object.burn.warmed || object.burn.charred;
@@ -256,7 +256,7 @@ double metresPerTick(const ObjectEntry& object) noexcept {
 
 void settle(BackendState& s) noexcept {
     for (const uint32_t slot : s.scene.awake)
-        if (rests(s.scene.objects[slot])) s.scene.awake.erase(slot);
+        if (isSleeping(s.scene.objects[slot])) s.scene.awake.erase(slot);
 }
 
 void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {

@@ -5,8 +5,8 @@
 #include "gpu/vk/device_objects.h"
 #include "gpu/vk/vk_backend.h"
 #include "mesh/burn_domain.h"
+#include "shared/appearance.h"
 #include "shared/deform.h"
-#include "shared/look.h"
 
 #include <algorithm>
 #include <array>
@@ -311,7 +311,7 @@ void DrawPipeline::setVertices(const DrawPass& pass) {
     static_assert(sizeof(RenderVertex) == sizeof(ShownVertex) &&
                   offsetof(RenderVertex, position) == offsetof(ShownVertex, x) &&
                   offsetof(RenderVertex, normal) == offsetof(ShownVertex, normal) &&
-                  offsetof(RenderVertex, material) == offsetof(ShownVertex, lead));
+                  offsetof(RenderVertex, material) == offsetof(ShownVertex, burnThrough));
     static constexpr std::array<VkVertexInputBindingDescription, 2> kBindings{
         {{0, sizeof(RenderVertex), VK_VERTEX_INPUT_RATE_VERTEX},
          {1, sizeof(ShownVertex), VK_VERTEX_INPUT_RATE_VERTEX}}};
@@ -319,7 +319,7 @@ void DrawPipeline::setVertices(const DrawPass& pass) {
         {0, 1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(ShownVertex, x)},
         {1, 1, VK_FORMAT_R32_UINT, offsetof(ShownVertex, normal)},
         {8, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
-        {7, 1, VK_FORMAT_R32_SFLOAT, offsetof(ShownVertex, lead)},
+        {7, 1, VK_FORMAT_R32_SFLOAT, offsetof(ShownVertex, burnThrough)},
         {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
         {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
         {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},

@@ -247,9 +247,10 @@ const Readback* VkBackend::nextReadback() {
             takeReadback(s, *slot, one);
         } else {
             results.given.runTiles = 0;
-            FrameInFlight* looks = one.looks >= 0 ? &s.ring.slots()[size_t(one.looks)] : nullptr;
-            if (looks && looks->frameIndex == one.ringFrame)
-                looks->timers.read(s.device, one.frameIndex, results.times);
+            FrameInFlight* appearances =
+                one.appearances >= 0 ? &s.ring.slots()[size_t(one.appearances)] : nullptr;
+            if (appearances && appearances->frameIndex == one.ringFrame)
+                appearances->timers.read(s.device, one.frameIndex, results.times);
         }
         results.pendingFirst = (results.pendingFirst + 1) % uint32_t(results.pending.size());
         --results.pendingCount;

@@ -14,7 +14,7 @@ namespace fw::gpu::vk {
 namespace {
 
 constexpr uint32_t kTableWords = kRefineTableSize / 2;
-constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
+constexpr uint32_t kAppearanceSide = 512, kNoiseSide = 64;
 // Holes are cut where a mean edge is longer than this, in segments of the finest; what was is until
 // it is shorter than the second.
 constexpr float kCutFrom = 4, kCutTo = 3;
@@ -61,15 +61,16 @@ bool refines(const ObjectEntry& object) noexcept {
            (object.refine.border || double(object.refine.quietTick) > object.refine.turnTick);
 }
 
-// The table is the first thing in the buffer of words. Of the look textures the noise of holes is
-// kept: a mip of the first layer, its first channel.
+// The table is the first thing in the buffer of words. Of the appearance textures the noise of
+// holes is kept: a mip of the first layer, its first channel.
 void RefineRenderer::uploadTable(BackendState& s) {
     const size_t texels = size_t(kNoiseSide) * kNoiseSide;
     size_t first = 0;
-    for (uint32_t side = kLookSide; side > kNoiseSide; side /= 2) first += size_t(side) * side * 4;
-    if (s.limits.looks.textures.size() >= first + texels * 4)
+    for (uint32_t side = kAppearanceSide; side > kNoiseSide; side /= 2)
+        first += size_t(side) * side * 4;
+    if (s.limits.appearances.textures.size() >= first + texels * 4)
         for (size_t i = 0; i < texels; ++i)
-            noise.push_back(uint8_t(s.limits.looks.textures[first + i * 4]));
+            noise.push_back(uint8_t(s.limits.appearances.textures[first + i * 4]));
     table = s.buffers.allocate(kPoolRefineWords, kTableWords, 0);
     FW_ASSERT(table.first() == 0, "word %u", table.first());
     s.scene.uploads.stage(kTableWords * 4, "refinement table")
@@ -323,7 +324,7 @@ void RefineRenderer::record(BackendState& s, FrameInFlight& slot) {
 }
 
 void RefineRenderer::takeEyes(const BackendState& s) noexcept {
-    if (!s.scene.lookTextures.live) return;
+    if (!s.scene.appearanceTextures.live) return;
     eyeCount = 0;
     pixels = 0;
     for (const OutsideView* const of : s.seenFrom()) {

@@ -78,7 +78,7 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
         resetObject(scene.objects[i], tick);
     }
     for (const RestoredObject& one : restored) {
-        if (one.rests) continue;
+        if (one.sleeps) continue;
         ObjectEntry& object = scene.objects[one.image.object];
         std::copy_n(one.materials, kMaterialsPerObject, object.materials);
         object.record.window = one.window;
@@ -95,7 +95,7 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     scene.recordsDirty = scene.restoreDue = true;
     s.simulation.shownTick = tick;
     s.simulation.links = s.simulation.occluders = 0;
-    s.simulation.shield = {};
+    s.simulation.occlusion = {};
     s.simulation.setAllEmpty(false);
     s.results.pendingCount = 0;
     for (FrameInFlight& slot : s.ring.slots()) slot.readbackPending = false;

@@ -14,7 +14,7 @@ struct SimulationState;
 struct MeshEntry {
     bool live = false;
     uint32_t width = 0, height = 0, tilesX = 0, tiles = 0, vertices = 0, indices = 0;
-    BufferRange meshTiles, slowness, links, readers, vertexRange, indexRange;
+    BufferRange meshTiles, slowness, links, dependents, vertexRange, indexRange;
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
     RefineMesh refine[2 * (kRefineDepth + 1)];       // by refineKey
     uint32_t sourceCells = 1;                        // see mesh/exchange_tiles.h
@@ -106,7 +106,7 @@ struct SceneTables {
     // and settle lets it go.
     core::SlotSet awake{memory};
     std::pmr::vector<ImageEntry> images{memory};
-    ImageEntry white, lookTextures, profiles;
+    ImageEntry white, appearanceTextures, profiles;
     ImageEntry flipbooks;  // not live: there are none
     UploadQueue uploads;
     // For the next frame: the content of restored objects, which replaces that of new ones.

@@ -73,8 +73,8 @@ void recordExchangeUpdate(BackendState& s, const ExchangeUpdate& update, FrameRe
 
 void uploadOcclusion(SimulationState& simulation, const OcclusionUpdate& update,
                      FrameRecorder& recorder) {
-    simulation.shield = update;
-    simulation.shield.words = {};
+    simulation.occlusion = update;
+    simulation.occlusion.words = {};
     recorder.upload(FW_BIND_HEAT_OCCLUSION, 0, update.words);
 }
 
@@ -127,12 +127,12 @@ StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planne
     step.heat = planned.heat && needs.heating;
     s.scene.airs = s.scene.airs || planned.rooms;
     step.exchange = step.reduce && planned.exchange;
-    if (planned.remote) recordExchangeUpdate(s, *planned.remote, recorder);
+    if (planned.exchangeUpdate) recordExchangeUpdate(s, *planned.exchangeUpdate, recorder);
     step.links = s.simulation.links;
     step.parts = s.scene.partMeshes != 0;
-    if (planned.shield) uploadOcclusion(s.simulation, *planned.shield, recorder);
+    if (planned.occlusionUpdate) uploadOcclusion(s.simulation, *planned.occlusionUpdate, recorder);
     step.rules.occluders = s.simulation.occluders;
-    setOcclusionPush(s.simulation.shield, step.rules);
+    setOcclusionPush(s.simulation.occlusion, step.rules);
     recordMaterials(s, planned.materials, recorder);
     step.wakeGroups = stageWakeGroups(s, planned.materials, needs.dense,
                                       needs.rebuildsPrediction && first, recorder);

@@ -28,7 +28,7 @@ struct SimulationState {
     uint32_t predictTick = 0;              // of the last round of predictions
     uint32_t shownTick = 0;                // tick of the state that draws show
     uint32_t links = 0, occluders = 0;     // of the last exchange update
-    OcclusionUpdate shield;                // the last one's place, without its words
+    OcclusionUpdate occlusion;             // the last one's place, without its words
     float wind[3] = {};
     float tickFraction = 0;
     std::pmr::vector<ExtendedStep> extended;  // of the frame

@@ -170,8 +170,8 @@ class PassRecorder {
                 return bindSet(place, s_.scene.flipbooks.set.set);
             case Textures::hostColor:
                 return bindSet(place, host.color);
-            case Textures::looks:
-                return bindSet(place, s_.scene.lookTextures.set.set);
+            case Textures::appearances:
+                return bindSet(place, s_.scene.appearanceTextures.set.set);
             case Textures::profiles:
                 return bindSet(place, s_.scene.profiles.set.set);
             case Textures::halfColor:

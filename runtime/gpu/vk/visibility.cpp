@@ -48,7 +48,7 @@ bool shownLately(uint64_t seenFrame, uint64_t frame) noexcept {
 }
 
 void markVisible(BackendState& s, const FwView& view, float height, uint64_t frame) noexcept {
-    if (!s.scene.lookTextures.live) return;
+    if (!s.scene.appearanceTextures.live) return;
     const ViewParams params = s.paramsOf(view, height, kAnyHeight);
     const auto lookAt = [&](ObjectEntry& object) {
         if (!object.live || object.seenFrame == frame) return;

@@ -12,32 +12,35 @@
 namespace fw::gpu::vk {
 namespace {
 
-// White, look textures, fire profiles, the table of refinement and that of appearances.
+// White, appearance textures, fire profiles, the table of refinement and that of appearances.
 void addSources(BackendState& s) {
-    LookSources& looks = s.limits.looks;
+    AppearanceSources& appearances = s.limits.appearances;
     std::byte whitePixel[4];
     std::fill(std::begin(whitePixel), std::end(whitePixel), std::byte(255));
     addImage(s, s.scene.white, 1, 1, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, whitePixel, "white");
-    if (!looks.textures.empty())
-        addImage(s, s.scene.lookTextures, 512, 512, kLookTextureLayers, 10,
-                 VK_FORMAT_R8G8B8A8_UNORM, looks.textures, "look textures");
-    if (!looks.profiles.empty()) {
+    if (!appearances.textures.empty())
+        addImage(s, s.scene.appearanceTextures, 512, 512, kAppearanceTextureLayers, 10,
+                 VK_FORMAT_R8G8B8A8_UNORM, appearances.textures, "appearance textures");
+    if (!appearances.profiles.empty()) {
         // The host's come behind the presets; none of them is there yet.
-        std::pmr::vector<std::byte> layers(looks.profiles.begin(), looks.profiles.end(), s.memory);
+        std::pmr::vector<std::byte> layers(appearances.profiles.begin(), appearances.profiles.end(),
+                                           s.memory);
         layers.resize(size_t(kFirePresets + kMaxFireProfiles) * kProfileBytes);
         addImage(s, s.scene.profiles, kProfileWidth, kProfileHeight,
                  kFirePresets + kMaxFireProfiles, 1, VK_FORMAT_R16G16_SFLOAT, layers,
                  "fire profiles");
     }
     s.refine.uploadTable(s);
-    if (!looks.table.empty()) {
-        const size_t rows = s.buffers.buffer(FW_BIND_APPEARANCES).size / sizeof looks.table[0];
-        s.scene.uploads.stage(looks.table.size_bytes(), "appearances")
-            .add(FW_BIND_APPEARANCES, 0, looks.table.first(std::min(rows, looks.table.size())));
+    if (!appearances.table.empty()) {
+        const size_t rows =
+            s.buffers.buffer(FW_BIND_APPEARANCES).size / sizeof appearances.table[0];
+        s.scene.uploads.stage(appearances.table.size_bytes(), "appearances")
+            .add(FW_BIND_APPEARANCES, 0,
+                 appearances.table.first(std::min(rows, appearances.table.size())));
     }
-    looks.table = {};
-    looks.textures = {};
-    looks.profiles = {};
+    appearances.table = {};
+    appearances.textures = {};
+    appearances.profiles = {};
 }
 
 // Records objects created, moved or restored since the last frame, and the plan's changes outside
@@ -49,7 +52,7 @@ void recordChanges(BackendState& s, const FramePlan& plan, const FrameNeeds& nee
         s.barriers.begin(vk, s.open.commands);  // rare: waits for all of the moves
     if (!s.scene.initialized) {
         for (const uint32_t resource :
-             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
+             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_CLUSTERS,
               FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_EXCHANGE_OBJECTS,
               FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
@@ -125,7 +128,8 @@ BackendState::~BackendState() { destroyAll(); }
 
 void BackendState::destroyAll() noexcept {
     for (ImageEntry& entry : scene.images) destroyImage(*this, entry);
-    for (ImageEntry* entry : {&scene.white, &scene.lookTextures, &scene.profiles, &scene.flipbooks})
+    for (ImageEntry* entry :
+         {&scene.white, &scene.appearanceTextures, &scene.profiles, &scene.flipbooks})
         destroyImage(*this, *entry);
     for (FrameInFlight& slot : ring.slots()) {
         deviceMemory.destroy(slot.upload);
@@ -271,7 +275,7 @@ void VkBackend::endOutside() {
         recordReadback(s, slot);
         if (s.open.planFrame) {
             PendingReadback one = pendingOf(s.open);
-            (s.open.readback ? one.slot : one.looks) = int32_t(s.ring.indexOf(slot));
+            (s.open.readback ? one.slot : one.appearances) = int32_t(s.ring.indexOf(slot));
             s.results.push(one);
         }
         s.barriers.end(s.device.table, s.open.commands);

@@ -64,7 +64,7 @@ struct WorldLimits {
     uint32_t seed = 1;                                // of everything cosmetic
     float up[3] = {0, 1, 0};                          // world up
     float paceFactor = 1;                             // as FwWorldDef
-    LookSources looks;                                // empty: recordInside draws nothing
+    AppearanceSources appearances;                    // empty: recordInside draws nothing
     // Buffers end where the last thing in them does, so that a validation layer sees an access past
     // it. For tests: every new object grows them.
     bool exactBuffers = false;

@@ -2,11 +2,11 @@
 
 #include "core/assert.h"
 #include "core/error.h"
+#include "shared/appearance.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
 #include "shared/flipbook.h"
-#include "shared/look.h"
 #include "shared/refine.h"
 #include "shared/room.h"
 #include "shared/spark.h"
@@ -100,7 +100,7 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_ROOM_AIR, "rooms' air", kPoolFixed, sizeof(RoomAir) * kMaxRooms, kComponentObjects},
     {FW_BIND_LIGHTS, "lights", kPoolFixed, sizeof(BurnLight), kComponentFlames,
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
-    {FW_BIND_LIGHT_CELLS, "light cells", kPoolFixed, 4, kComponentFlames},
+    {FW_BIND_CLUSTERS, "clusters", kPoolFixed, 4, kComponentFlames},
     {FW_BIND_FLAMES, "flame quads", kPoolFlames, sizeof(FlameQuad), kComponentFlames},
     {FW_BIND_DRAW_ARGS, "draw arguments", kPoolFlames, 8, kComponentFlames,
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
@@ -217,8 +217,8 @@ WorldBuffers::WorldBuffers(Device& device, DeviceMemory& deviceMemory, RetireQue
         slot.row = row;
         if (!device.texels) slot.row.extraUsage &= ~kTexels;
         if (row.binding == FW_BIND_LIGHTS) slot.row.stride *= std::max(1u, sizes.lights);
-        if (row.binding == FW_BIND_LIGHT_CELLS)
-            slot.row.stride *= kLightCellHeader + kLightCells * kLightCellWords;
+        if (row.binding == FW_BIND_CLUSTERS)
+            slot.row.stride *= kClusterHeader + kClusterSlots * kClusterWords;
         if (row.binding == FW_BIND_APPEARANCES) slot.row.stride *= kAppearanceRows;
     }
     for (uint32_t view = 1; view < kMaxViews; ++view)

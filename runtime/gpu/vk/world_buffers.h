@@ -7,7 +7,7 @@
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
 #include "gpu/vk/range_allocator.h"
-#include "shared/look.h"
+#include "shared/appearance.h"
 
 #include <array>
 #include <atomic>

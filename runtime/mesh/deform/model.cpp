@@ -316,14 +316,14 @@ struct Builder {
         const RenderVertex& v = domain.vertices[vertex];
         const uint32_t particle = model.particleOf[vertex];
         DeformEmbedding made{};
-        made.node = model.particles[particle].vertex;
+        made.particle = model.particles[particle].vertex;
         made.normal = v.normal;
         steps.clear();
         glm::dvec3 face(0);
         for (const uint32_t corner : corners.of(particle))
             if (domain.vertices[domain.indices[corner]].normal == v.normal)
-                addStep(corner, made.node);
-        std::fill_n(made.ring, kDeformRing, made.node);
+                addStep(corner, made.particle);
+        std::fill_n(made.ring, kDeformRing, made.particle);
         fillRing(made.ring, 1);
         const glm::dvec3 at = placeOf(v);
         for (const uint32_t other : made.ring) {

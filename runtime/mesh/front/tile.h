@@ -68,7 +68,7 @@ inline std::span<const uint32_t> seamDependents(const BurnDomain& domain, uint32
     const TileStatic& statics = domain.tiles[tile];
     if ((statics.seamMask & mask) == 0) return {};
     FW_ASSERT(statics.dependentStart + statics.dependentCount <= domain.dependents.size(),
-              "%u readers", statics.dependentCount);
+              "%u dependents", statics.dependentCount);
     return {domain.dependents.data() + statics.dependentStart, statics.dependentCount};
 }
 

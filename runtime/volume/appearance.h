@@ -11,7 +11,7 @@ namespace fw::volume {
 enum class Painter : uint32_t { Fire, Candle, Burner };
 
 // Lengths of noise are in units of min(diameter, height / 0.75), which keeps squat fires fine.
-struct FlameLook {
+struct FlameAppearance {
     float lambda = 0.44f, lambdaWarp = 0.47f, lambdaColumn = 0.36f;
     float stretch = 2.9f;      // 1 explosion, 3 silk
     float turbulence = 0.65f;  // [0, 2]
@@ -62,14 +62,14 @@ enum class FlamePreset : uint32_t {
 const char* presetName(FlamePreset preset) noexcept;
 
 struct FlamePresetDef {
-    FlameLook look;
+    FlameAppearance appearance;
     float power = 60.0f;    // kW
     float diameter = 0.6f;  // m
 };
 FlamePresetDef presetDef(FlamePreset preset) noexcept;
 
-// The default profile of a look.
-void paintLook(const FlameLook& look, Profile& profile);
+// The default profile of an appearance.
+void paintLook(const FlameAppearance& appearance, Profile& profile);
 
 // Heskestad: mean visible height, m; negative for wide, weak fires. Q kW, D m.
 float flameHeight(float power, float diameter) noexcept;
@@ -78,8 +78,9 @@ float puffFrequency(float diameter) noexcept;
 // McCaffrey's centreline at z m above the base: m/s, K above ambient.
 float plumeSpeed(float power, float z) noexcept;
 float plumeExcess(float power, float z) noexcept;
-// Visible height over the profile's, for this look. Measured; the unit tests of heights check it.
-float heightFactor(const FlameLook& look, float height, float diameter) noexcept;
+// Visible height over the profile's, for this appearance. Measured; the unit tests of heights check
+// it.
+float heightFactor(const FlameAppearance& appearance, float height, float diameter) noexcept;
 
 // A fire too weak for its width burns as many small flames, each as high as it is wide.
 constexpr uint32_t kMaxFlamelets = 32;
@@ -97,8 +98,8 @@ struct FlameScroll {
     std::array<double, gpu::kFlameOctaves> octaves{};
     double warp = 0.0, column = 0.0, smoke = 0.0, puff = 0.0;
 };
-void advanceScroll(FlameScroll& scroll, const FlameLook& look, const gpu::FlameRecord& record,
-                   double seconds) noexcept;
+void advanceScroll(FlameScroll& scroll, const FlameAppearance& appearance,
+                   const gpu::FlameRecord& record, double seconds) noexcept;
 
 struct FlameSize {
     float power = 0.0f;     // kW
@@ -107,7 +108,7 @@ struct FlameSize {
     float pulse = 1.0f;     // factor of puffing on the height
 };
 // A record without its curve, bounds and light. `seed` shifts it in the noise.
-gpu::FlameRecord describeFlame(const FlameLook& look, const FlameSize& size,
+gpu::FlameRecord describeFlame(const FlameAppearance& appearance, const FlameSize& size,
                                const FlameScroll& scroll, uint32_t seed) noexcept;
 
 }  // namespace fw::volume

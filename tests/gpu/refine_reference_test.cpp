@@ -4,7 +4,7 @@
 #include "support/pass_rig.h"
 #include "support/refine_scene.h"
 
-namespace fw::test::refine_published_test {
+namespace fw::test::refine_reference_test {
 namespace {
 
 constexpr uint32_t kBindings[] = {FW_BIND_PREDICT,          FW_BIND_GRADIENT,
@@ -127,4 +127,4 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
 }
 
 }  // namespace
-}  // namespace fw::test::refine_published_test
+}  // namespace fw::test::refine_reference_test

@@ -73,13 +73,13 @@ void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def, float units
 }
 
 void ExchangeSystem::adoptOcclusion(components::HeatOcclusion& made) noexcept {
-    shield_.grid = std::move(made);
+    heatOcclusion_.grid = std::move(made);
     occlusionChanged();
 }
 
 // Jets end at the host's cells, too.
 void ExchangeSystem::occlusionChanged() noexcept {
-    shield_.unsent = shield_.unpacked = true;
+    heatOcclusion_.unsent = heatOcclusion_.unpacked = true;
     ++scene_.geometryVersion;
 }
 
@@ -88,31 +88,31 @@ void ExchangeSystem::occlusionChanged() noexcept {
 void ExchangeSystem::uploadOcclusion(const components::HeatOcclusion& made,
                                      std::span<const uint32_t> slots) noexcept {
     if (!context_.recorder.records()) return;
-    const bool stays = made.shape == shield_.grid.shape;
-    if (!stays) context_.recorder.record(SetHeatShield{made.shape});
-    recordParts<SetShieldCells>(context_.recorder, made.solid, shield_.grid.solid, stays);
+    const bool stays = made.shape == heatOcclusion_.grid.shape;
+    if (!stays) context_.recorder.record(SetHeatOcclusion{made.shape});
+    recordParts<SetOcclusionCells>(context_.recorder, made.solid, heatOcclusion_.grid.solid, stays);
     for (size_t i = 0; i < slots.size(); ++i)
-        context_.recorder.record(AddShieldObject{slots[i] + 1, i + 1 == slots.size()});
-    if (slots.empty() && stays && !shield_.grid.baked.empty())
-        context_.recorder.record(AddShieldObject{0, true});
+        context_.recorder.record(AddOcclusionObject{slots[i] + 1, i + 1 == slots.size()});
+    if (slots.empty() && stays && !heatOcclusion_.grid.baked.empty())
+        context_.recorder.record(AddOcclusionObject{0, true});
 }
 
-void ExchangeSystem::apply(const SetHeatShield& command) {
+void ExchangeSystem::apply(const SetHeatOcclusion& command) {
     context_.recorder.mayChange();
     components::HeatOcclusion made(context_.memory);
     made.shape = command.shape;
     made.solid.assign(made.shape.words(), 0);
     adoptOcclusion(made);
-    shield_.commandSlots.clear();
+    heatOcclusion_.commandSlots.clear();
     context_.recorder.record(command);
 }
 
-void ExchangeSystem::apply(const SetShieldCells& command) {
+void ExchangeSystem::apply(const SetOcclusionCells& command) {
     context_.recorder.mayChange();
-    components::HeatOcclusion& grid = shield_.grid;
+    components::HeatOcclusion& grid = heatOcclusion_.grid;
     if (command.first >= grid.solid.size())
-        core::failData("A command is of word %u of the shield, which has %zu.", command.first,
-                       grid.solid.size());
+        core::failData("A command is of word %u of the heat-occlusion grid, which has %zu.",
+                       command.first, grid.solid.size());
     std::copy_n(command.values.begin(),
                 std::min<size_t>(command.kCount, grid.solid.size() - command.first),
                 grid.solid.begin() + std::ptrdiff_t(command.first));
@@ -122,38 +122,42 @@ void ExchangeSystem::apply(const SetShieldCells& command) {
     context_.recorder.record(command);
 }
 
-void ExchangeSystem::apply(const AddShieldObject& command) {
+void ExchangeSystem::apply(const AddOcclusionObject& command) {
     context_.recorder.mayChange();
     if (command.object1 != 0) {
         if (!scene_.objects.findSlot(command.object1 - 1))
-            core::failData("A command shields by object %u, which is not there.", command.object1);
-        if (shield_.commandSlots.size() >= scene_.objects.live())
-            core::failData("Commands name more objects for one shield than the %u that there are.",
-                           scene_.objects.live());
-        shield_.commandSlots.push_back(command.object1 - 1);
+            core::failData("A command occludes heat by object %u, which is not there.",
+                           command.object1);
+        if (heatOcclusion_.commandSlots.size() >= scene_.objects.live())
+            core::failData(
+                "Commands name more objects for one heat-occlusion grid than the %u that there "
+                "are.",
+                scene_.objects.live());
+        heatOcclusion_.commandSlots.push_back(command.object1 - 1);
     }
     if (command.last) {
         std::pmr::vector<uint32_t> slots(context_.memory);
-        slots.swap(shield_.commandSlots);
-        bakeHeatOcclusion(shield_.grid.shape, slots, shield_.grid.baked);
-        shield_.unsent = shield_.unpacked = true;
+        slots.swap(heatOcclusion_.commandSlots);
+        bakeHeatOcclusion(heatOcclusion_.grid.shape, slots, heatOcclusion_.grid.baked);
+        heatOcclusion_.unsent = heatOcclusion_.unpacked = true;
     }
     context_.recorder.record(command);
 }
 
 // The slot of a destroyed object may become another's.
-void ExchangeSystem::removeFromShield(uint32_t slot) noexcept {
-    std::erase(shield_.commandSlots, slot);
+void ExchangeSystem::removeOccluderCells(uint32_t slot) noexcept {
+    std::erase(heatOcclusion_.commandSlots, slot);
     const size_t gone =
-        std::erase_if(shield_.grid.baked, [&](const components::OcclusionCell& cell) {
+        std::erase_if(heatOcclusion_.grid.baked, [&](const components::OcclusionCell& cell) {
             return (cell.what & gpu::kOcclusionSlotMask) == slot;
         });
-    if (gone != 0) shield_.unsent = shield_.unpacked = true;
+    if (gone != 0) heatOcclusion_.unsent = heatOcclusion_.unpacked = true;
 }
 
 void ExchangeSystem::packHeatOcclusion() {
-    if (shield_.unpacked) components::packOcclusion(shield_.grid, shield_.words);
-    shield_.unpacked = false;
+    if (heatOcclusion_.unpacked)
+        components::packOcclusion(heatOcclusion_.grid, heatOcclusion_.words);
+    heatOcclusion_.unpacked = false;
 }
 
 // For queries, which are answered at once while texels come some frames later: an object's cells
@@ -161,30 +165,30 @@ void ExchangeSystem::packHeatOcclusion() {
 components::OcclusionView ExchangeSystem::occlusionView() {
     components::OcclusionView view;
     packHeatOcclusion();
-    if (shield_.grid.shape.cells() == 0) return view;
-    shield_.fallen.assign(scene_.objects.slotCount(), 0);
+    if (heatOcclusion_.grid.shape.cells() == 0) return view;
+    heatOcclusion_.fallen.assign(scene_.objects.slotCount(), 0);
     for (const Object* object : scene_.touched) {  // nothing of the others has burnt
         const gpu::ObjectCounters& now = object->counters;
         const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
         const bool holes = !(object->data.flags & FW_BURNABLE_NO_HOLES);
-        shield_.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
+        heatOcclusion_.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
     }
-    view.shape = shield_.grid.shape;
-    view.words = shield_.words;
-    view.fallen = shield_.fallen;
+    view.shape = heatOcclusion_.grid.shape;
+    view.words = heatOcclusion_.words;
+    view.fallen = heatOcclusion_.fallen;
     return view;
 }
 
 // awake: the step will run.
 void ExchangeSystem::planOcclusion(gpu::StepPlan& step, bool awake) {
-    if (!awake || !shield_.unsent || frame_.occlusionSent) return;
+    if (!awake || !heatOcclusion_.unsent || frame_.occlusionSent) return;
     packHeatOcclusion();
-    const components::OcclusionGridShape& shape = shield_.grid.shape;
-    shield_.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
-    shield_.update.cell = shape.cell;
-    shield_.update.counts = components::countsOf(shape);
-    shield_.update.words = shield_.words;
-    step.shield = &shield_.update;
+    const components::OcclusionGridShape& shape = heatOcclusion_.grid.shape;
+    heatOcclusion_.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
+    heatOcclusion_.update.cell = shape.cell;
+    heatOcclusion_.update.counts = components::countsOf(shape);
+    heatOcclusion_.update.words = heatOcclusion_.words;
+    step.occlusionUpdate = &heatOcclusion_.update;
     frame_.occlusionSent = true;
 }
 

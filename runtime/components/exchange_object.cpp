@@ -1,4 +1,4 @@
-#include "components/remote.h"
+#include "components/exchange_object.h"
 
 #include "components/wind_zone.h"
 

@@ -1,5 +1,5 @@
 // Presets, painters of profiles, and the published laws of a flame's height and rhythm.
-#include "volume/look.h"
+#include "volume/appearance.h"
 
 #include "core/assert.h"
 #include "core/hash.h"
@@ -22,7 +22,7 @@ struct Paint {
 };
 
 // A body of soot, denser in a sheet just inside its surface, narrowing to a point.
-Paint paintFire(const FlameLook& l, float rho, float y) noexcept {
+Paint paintFire(const FlameAppearance& l, float rho, float y) noexcept {
     const float half =
         0.86f * std::pow(1.0f - y, 0.75f) * mix(0.85f, 1.0f, smoothstep(0.0f, 0.12f, y));
     const float e = rho / std::max(half, 1e-3f);  // 0 axis, 1 surface
@@ -38,7 +38,7 @@ Paint paintFire(const FlameLook& l, float rho, float y) noexcept {
 }
 
 // A tear drop: dark around the wick, a blue cup below, luminous above.
-Paint paintCandle(const FlameLook& l, float rho, float y) noexcept {
+Paint paintCandle(const FlameAppearance& l, float rho, float y) noexcept {
     const float half = 1.03f * smoothstep(-0.10f, 0.30f, y) * std::pow(1.0f - y, 0.62f);
     const float e = rho / std::max(half, 1e-3f);
     const float soot = (1.0f - smoothstep(0.55f, 1.0f, e)) *
@@ -53,7 +53,7 @@ Paint paintCandle(const FlameLook& l, float rho, float y) noexcept {
 }
 
 // Premixed gas: a bright inner cone in a faint mantle, no soot but for a breath at the tip.
-Paint paintBurner(const FlameLook& l, float rho, float y) noexcept {
+Paint paintBurner(const FlameAppearance& l, float rho, float y) noexcept {
     const float mantle = 0.80f * std::pow(1.0f - y, 0.6f);
     const float cone = 0.62f * (1.0f - y / 0.42f);
     const float q = (rho - cone) / 0.07f;
@@ -81,7 +81,7 @@ const char* presetName(FlamePreset preset) noexcept {
 
 FlamePresetDef presetDef(FlamePreset preset) noexcept {
     FlamePresetDef d;
-    FlameLook& l = d.look;
+    FlameAppearance& l = d.appearance;
     const auto tint = [&](float r, float g, float b) {
         l.tint[0] = r, l.tint[1] = g, l.tint[2] = b, l.tint[3] = 1;
     };
@@ -158,15 +158,16 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
     return d;
 }
 
-void paintLook(const FlameLook& look, Profile& profile) {
+void paintLook(const FlameAppearance& appearance, Profile& profile) {
     std::array<float, Profile::kTexels> kelvin, soot;
     for (uint32_t j = 0; j < gpu::kProfileHeight; ++j)
         for (uint32_t i = 0; i < gpu::kProfileWidth; ++i) {
             const float rho = (float(i) + 0.5f) / float(gpu::kProfileWidth) * gpu::kProfileReach;
             const float y = (float(j) + 0.5f) / float(gpu::kProfileHeight);
-            const Paint p = look.painter == Painter::Candle   ? paintCandle(look, rho, y)
-                            : look.painter == Painter::Burner ? paintBurner(look, rho, y)
-                                                              : paintFire(look, rho, y);
+            const Paint p = appearance.painter == Painter::Candle ? paintCandle(appearance, rho, y)
+                            : appearance.painter == Painter::Burner
+                                ? paintBurner(appearance, rho, y)
+                                : paintFire(appearance, rho, y);
             kelvin[j * gpu::kProfileWidth + i] = p.kelvin;
             soot[j * gpu::kProfileWidth + i] = p.soot;
         }
@@ -193,10 +194,11 @@ float plumeExcess(float power, float z) noexcept {
                            : 21.6f * std::pow(scaled, -5.0f / 3.0f);
 }
 
-float heightFactor(const FlameLook& look, float height, float diameter) noexcept {
+float heightFactor(const FlameAppearance& appearance, float height, float diameter) noexcept {
     const float slender = std::log2(std::max(height, 1e-6f) / std::max(diameter, 1e-4f));
     // Jets, of more than sixteen diameters, taper later.
-    return look.heightFactor + look.heightSlope * std::clamp(slender - 1.0f, 0.0f, 2.0f) +
+    return appearance.heightFactor +
+           appearance.heightSlope * std::clamp(slender - 1.0f, 0.0f, 2.0f) +
            0.10f * std::clamp(slender - 4.0f, 0.0f, 2.0f);
 }
 
@@ -223,9 +225,9 @@ uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamele
     return n;
 }
 
-void advanceScroll(FlameScroll& s, const FlameLook& look, const gpu::FlameRecord& r,
+void advanceScroll(FlameScroll& s, const FlameAppearance& appearance, const gpu::FlameRecord& r,
                    double seconds) noexcept {
-    const double metres = double(r.speed) * double(look.burn) * seconds;
+    const double metres = double(r.speed) * double(appearance.burn) * seconds;
     const double cells = metres / double(r.stretch * r.lambda);
     FW_ASSERT(r.stretch > 0 && r.lambda > 0 && r.lambdaWarp > 0 && r.lambdaColumn > 0);
     for (uint32_t o = 0; o < gpu::kFlameOctaves; ++o)  // octaves differ in speed
@@ -237,8 +239,8 @@ void advanceScroll(FlameScroll& s, const FlameLook& look, const gpu::FlameRecord
     s.puff -= std::floor(s.puff);
 }
 
-gpu::FlameRecord describeFlame(const FlameLook& l, const FlameSize& size, const FlameScroll& scroll,
-                               uint32_t seed) noexcept {
+gpu::FlameRecord describeFlame(const FlameAppearance& l, const FlameSize& size,
+                               const FlameScroll& scroll, uint32_t seed) noexcept {
     gpu::FlameRecord r{};
     const float d = std::max(size.diameter, 1e-4f);
     const float height = std::max(size.height, 1e-4f) / heightFactor(l, size.height, d);

@@ -1,8 +1,8 @@
 // Records shared by the drawing passes: appearance of a burning material, view, flame quad. Lengths
 // in m, times in appearance seconds (see BurnMaterial::timeScale), temperatures in K.
 // clang-format off
-#ifndef FW_SHARED_LOOK_H
-#define FW_SHARED_LOOK_H
+#ifndef FW_SHARED_APPEARANCE_H
+#define FW_SHARED_APPEARANCE_H
 #include "shared/types.h"
 
 FW_SHARED_BEGIN
@@ -35,7 +35,7 @@ FW_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake
 // R primary crack distance, G secondary, BA slopes of cracks.
 FW_CONST float kLayerChar = 1.0f;
 FW_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
-FW_CONST float kLookTextureSide = 512.0f;
+FW_CONST float kAppearanceTextureSide = 512.0f;
 FW_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
 FW_CONST float kCrumpleSlopeRange = 48.0f; // per tile, at texel value 1
 
@@ -157,7 +157,7 @@ struct SurfaceDraw {
     float timeScale;         // as BurnMaterial
     float thickness;         // m
     float horizon;           // s that the prediction reaches ahead
-    uint look;               // row of the appearance table
+    uint appearance;               // row of the appearance table
     uint stateBase;          // as BurnObject
     uint size;               // texels: width, << 16: height
     uint flags;              // kObject..., kDrawVertexLight
@@ -239,11 +239,11 @@ struct SortPush {
 };
 FW_SIZE(SortPush, 16)
 
-// Hash grid of heat-release clusters: kLightCellHeader words, then cells of kLightCellWords.
-FW_CONST uint kLightCells = 4096u;
+// Hash grid of heat-release clusters: kClusterHeader words, then cells of kClusterWords.
+FW_CONST uint kClusterSlots = 4096u;
 // Key, power / 16 W, 3 weighted offsets, area / 0.1 cm^2, side, 3 cell coordinates, level, unused.
-FW_CONST uint kLightCellWords = 12u;
-FW_CONST uint kLightCellHeader = 16u; // [0]: requested quads, in 1/16
+FW_CONST uint kClusterWords = 12u;
+FW_CONST uint kClusterHeader = 16u; // [0]: requested quads, in 1/16
 
 FW_SHARED_END
 #endif

@@ -1,5 +1,5 @@
 // An object's record for the exchange: pose and powers become integers here, so that every backend
-// computes with the same numbers. Neighbours are world/remote's.
+// computes with the same numbers. ExchangeSystem finds neighbours.
 #pragma once
 #include "components/burnable_mesh.h"
 #include "shared/exchange.h"

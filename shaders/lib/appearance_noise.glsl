@@ -1,18 +1,19 @@
-// Samples of the appearance textures at a place in metres. The includer declares `lookTextures`.
+// Samples of the appearance textures at a place in metres. The includer declares
+// `appearanceTextures`.
 #include "shared/types.h"
 
 // Mip of a pattern of `tiles` per metre at `pixel` metres per pixel, rounded: a software device
 // would fetch two mips otherwise, for twice the time.
 float noiseLod(float pixel, float tiles) {
-    return floor(log2(max(pixel * tiles * kLookTextureSide, 1.0)) + 0.5);
+    return floor(log2(max(pixel * tiles * kAppearanceTextureSide, 1.0)) + 0.5);
 }
 
 vec4 noiseAt(vec2 d, float tiles, float pixel) {
-    return textureLod(lookTextures, vec3(d * tiles, kLayerNoise), noiseLod(pixel, tiles));
+    return textureLod(appearanceTextures, vec3(d * tiles, kLayerNoise), noiseLod(pixel, tiles));
 }
 
-vec4 lookLayer(vec2 uv, float layer, float lod) {
-    return textureLod(lookTextures, vec3(uv, layer), lod);
+vec4 appearanceLayer(vec2 uv, float layer, float lod) {
+    return textureLod(appearanceTextures, vec3(uv, layer), lod);
 }
 
 float hash(uvec3 v) {
