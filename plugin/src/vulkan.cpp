@@ -81,7 +81,8 @@ class VulkanDevice final : public Device {
         limits.seed = def.seed;
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;
-        limits.appearances.table = components::materialLooks();
+        limits.appearances.table = components::materialAppearances();
+        limits.appearances.families = components::materialFamilies();
         limits.appearances.textures = appearanceTextures();
         limits.appearances.profiles = fireProfiles_;
         return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(

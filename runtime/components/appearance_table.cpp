@@ -10,9 +10,8 @@ namespace fw::components {
 namespace {
 
 using gpu::MaterialAppearance;
+using gpu::MaterialFamily;
 using gpu::vec4;
-
-static_assert(kAppearanceCount == FW_MATERIAL_PRESET_COUNT);
 
 using M = MaterialAppearance;
 
@@ -156,26 +155,30 @@ constexpr Colour kLeatherColours[] = {{&M::charColor, {0.016f, 0.015f, 0.0145f, 
 struct Row {
     uint32_t like;  // the preset that it differs from; its own number: none
     gpu::uint base;
+    MaterialFamily family;
+    float bend;  // stiffness against bending of a fresh sheet, [0, 1]
     std::span<const Number> numbers;
     std::span<const Colour> colours = {};
 };
-constexpr Row kRows[kAppearanceCount] = {
-    // by FwMaterialPreset
-    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStone, kStone, kStoneColours},
-    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseWood, kPine, kPineColours},
-    {FW_MATERIAL_PINE, gpu::kBasePaint, kPaintedWood, kPaintedWoodColours},
-    {FW_MATERIAL_PAPER, gpu::kBasePrint, {}},
-    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePaper, kPaper, kPaperColours},
-    {FW_MATERIAL_PAPER, gpu::kBaseWeave, kCotton, kCottonColours},
-    {FW_MATERIAL_PLASTIC, gpu::kBaseWeave, kPolyester},
-    {FW_MATERIAL_PAPER, gpu::kBaseLeaf, kDryLeaf, kDryLeafColours},
-    {FW_MATERIAL_DRY_LEAF, gpu::kBaseLeaf, kGreenLeaf, kGreenLeafColours},
-    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStraw, kThatch, kThatchColours},
-    {FW_MATERIAL_THATCH, gpu::kBaseStraw, kDryGrass},
-    {FW_MATERIAL_PINE, gpu::kBaseWood, kPlywood},
-    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseLeather, kLeather, kLeatherColours},
-    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePlastic, kPlastic, kPlasticColours},
+// clang-format off
+constexpr Row kRows[] = {  // by FwMaterialPreset
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStone, MaterialFamily::wood, 0.8f, kStone, kStoneColours},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseWood, MaterialFamily::wood, 0.8f, kPine, kPineColours},
+    {FW_MATERIAL_PINE, gpu::kBasePaint, MaterialFamily::paint, 0.8f, kPaintedWood, kPaintedWoodColours},
+    {FW_MATERIAL_PAPER, gpu::kBasePrint, MaterialFamily::sheet, 0.8f, {}},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePaper, MaterialFamily::sheet, 0.8f, kPaper, kPaperColours},
+    {FW_MATERIAL_PAPER, gpu::kBaseWeave, MaterialFamily::sheet, 0.3f, kCotton, kCottonColours},
+    {FW_MATERIAL_PLASTIC, gpu::kBaseWeave, MaterialFamily::hide, 0.05f, kPolyester},
+    {FW_MATERIAL_PAPER, gpu::kBaseLeaf, MaterialFamily::plant, 0.8f, kDryLeaf, kDryLeafColours},
+    {FW_MATERIAL_DRY_LEAF, gpu::kBaseLeaf, MaterialFamily::plant, 0.8f, kGreenLeaf, kGreenLeafColours},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStraw, MaterialFamily::plant, 0.8f, kThatch, kThatchColours},
+    {FW_MATERIAL_THATCH, gpu::kBaseStraw, MaterialFamily::plant, 0.8f, kDryGrass},
+    {FW_MATERIAL_PINE, gpu::kBaseWood, MaterialFamily::wood, 0.8f, kPlywood},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseLeather, MaterialFamily::hide, 0.4f, kLeather, kLeatherColours},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePlastic, MaterialFamily::hide, 0.8f, kPlastic, kPlasticColours},
 };
+// clang-format on
+static_assert(std::size(kRows) == FW_MATERIAL_PRESET_COUNT);
 
 constexpr MaterialAppearance appearanceOf(uint32_t preset) {
     const Row& row = kRows[preset];
@@ -186,21 +189,29 @@ constexpr MaterialAppearance appearanceOf(uint32_t preset) {
     return appearance;
 }
 
-constexpr auto kAppearances = [] {
-    std::array<MaterialAppearance, kAppearanceCount> appearances{};
-    for (uint32_t i = 0; i < kAppearanceCount; ++i) appearances[i] = appearanceOf(i);
-    return appearances;
-}();
+template <class F>
+constexpr auto byPreset(F of) {
+    std::array<decltype(of(0)), std::size(kRows)> made{};
+    for (uint32_t i = 0; i < made.size(); ++i) made[i] = of(i);
+    return made;
+}
+constexpr auto kAppearances = byPreset(appearanceOf);
+constexpr auto kFamilies = byPreset([](uint32_t preset) { return kRows[preset].family; });
+
+constexpr uint32_t rowOf(uint32_t preset) noexcept {
+    return preset < std::size(kRows) ? preset : uint32_t(FW_MATERIAL_NONCOMBUSTIBLE);
+}
 
 }  // namespace
 
-std::span<const MaterialAppearance, kAppearanceCount> materialLooks() noexcept {
-    return kAppearances;
-}
+std::span<const MaterialAppearance> materialAppearances() noexcept { return kAppearances; }
+std::span<const MaterialFamily> materialFamilies() noexcept { return kFamilies; }
 
 MaterialAppearance materialAppearance(uint32_t preset) noexcept {
-    return kAppearances[preset < kAppearanceCount ? preset : 0];
+    return kAppearances[rowOf(preset)];
 }
+
+float freshBend(uint32_t preset) noexcept { return kRows[rowOf(preset)].bend; }
 
 float holeEndSeconds(
     const gpu::MaterialAppearance& appearance) noexcept {  // holeDelay, appearance.glsl

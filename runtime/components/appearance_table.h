@@ -9,11 +9,13 @@
 
 namespace fw::components {
 
-constexpr uint32_t kAppearanceCount = 14;  // FW_MATERIAL_PRESET_COUNT
-
-[[nodiscard]] std::span<const gpu::MaterialAppearance, kAppearanceCount> materialLooks() noexcept;
+// By FwMaterialPreset.
+[[nodiscard]] std::span<const gpu::MaterialAppearance> materialAppearances() noexcept;
+[[nodiscard]] std::span<const gpu::MaterialFamily> materialFamilies() noexcept;
 // Row of a FwMaterialPreset; a number beyond the table gets row 0, which never burns.
 [[nodiscard]] gpu::MaterialAppearance materialAppearance(uint32_t preset) noexcept;
+// Stiffness against bending of its fresh sheets, [0, 1].
+[[nodiscard]] float freshBend(uint32_t preset) noexcept;
 // Parameters of its holes, for refined meshes.
 [[nodiscard]] mesh::RefineHoles holesOf(const gpu::MaterialAppearance& appearance) noexcept;
 // s after ignition until nothing of it is visible, at the latest noise.

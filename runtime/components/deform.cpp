@@ -21,14 +21,6 @@ uint32_t ticksOf(float seconds) noexcept {
     return uint32_t(std::clamp(seconds * float(gpu::kTicksPerSecond), 1.0f, 4.0e9f));
 }
 
-// Stiffness against bending of fresh material, [0, 1].
-float softness(uint32_t appearance) noexcept {
-    return appearance == FW_MATERIAL_COTTON      ? 0.3f
-           : appearance == FW_MATERIAL_POLYESTER ? 0.05f
-           : appearance == FW_MATERIAL_LEATHER   ? 0.4f
-                                                 : 0.8f;
-}
-
 gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMaterial& record,
                                  bool harmed, bool holes, bool sheet) noexcept {
     gpu::DeformMaterial made{};
@@ -37,7 +29,7 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
     made.drag = 9.81f / (kFlutter * std::sqrt(weight / 0.08f));
     made.shrink = def.shrink;
     made.curl = def.curl;
-    made.bend = softness(def.appearance);
+    made.bend = freshBend(def.appearance);
     if (!(record.flags & 1) || !harmed) return made;
     made.charTicks = record.flameTicks;
     made.depth = def.recede * def.thickness;

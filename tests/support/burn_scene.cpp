@@ -302,21 +302,27 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
 }
 
 gpu::AppearanceSources testAppearances() {
-    static const std::vector<gpu::MaterialAppearance> table = [] {
-        std::vector<gpu::MaterialAppearance> rows;
-        for (uint32_t i = 0; i < components::kAppearanceCount; ++i)
-            rows.push_back(components::materialAppearance(i));
-        return rows;
-    }();
     static const std::pmr::vector<std::byte> textures =
         components::bakeAppearanceTextures(std::pmr::get_default_resource());
-    gpu::AppearanceSources looks;
-    looks.table = table;
-    looks.textures = textures;
+    gpu::AppearanceSources sources;
+    sources.table = components::materialAppearances();
+    sources.families = components::materialFamilies();
+    sources.textures = textures;
     static const std::pmr::vector<std::byte> profiles =
         components::bakeFireProfiles(std::pmr::get_default_resource());
-    looks.profiles = profiles;
-    return looks;
+    sources.profiles = profiles;
+    sources.viewParams = [](const gpu::ViewInput& input, gpu::ViewParams& out) {
+        components::ViewInputs inputs;
+        std::copy_n(input.viewport, 4, inputs.viewport);
+        inputs.now = input.now;
+        inputs.lightCount = input.lightCount;
+        inputs.lastLight = input.lastLight;
+        inputs.flameCapacity = input.flameCapacity;
+        inputs.seed = input.seed;
+        inputs.paceFactor = input.paceFactor;
+        out = components::makeViewParams(*input.view, inputs);
+    };
+    return sources;
 }
 
 FwView testView(const float eye[3], const float target[3], float degrees, float aspect,

@@ -38,11 +38,16 @@ struct ViewInput {  // of ViewParams
 // Given by the layer above, which knows how things look.
 constexpr uint32_t kAppearanceTextureLayers = 3;
 struct AppearanceSources {
-    std::span<const MaterialAppearance> table;  // by FwMaterialPreset
+    std::span<const MaterialAppearance> table;  // by FwMaterialPreset. Copied
+    std::span<const MaterialFamily> families;   // by FwMaterialPreset; static
     // RGBA8, 512^2, layer by layer, each with its 10 mips, largest first. Copied.
     std::span<const std::byte> textures;
     // R16G16_SFLOAT, kProfileWidth x kProfileHeight, kFirePresets layers. Copied.
     std::span<const std::byte> profiles;
+    [[nodiscard]] MaterialFamily familyOf(const BurnMaterial& material) const noexcept {
+        return material.appearance < families.size() ? families[material.appearance]
+                                                     : MaterialFamily::wood;
+    }
 };
 
 // One material of one object as `surface` draws it. Ranges are in the shared vertex and index
@@ -97,9 +102,8 @@ struct SurfaceStep {  // a draw of an item
 // All draws of `items`, by phase, pass and item. `out` has room for kMostSurfaceSteps of each.
 constexpr uint32_t kMostSurfaceSteps = 3;
 void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep>& out) noexcept;
-[[nodiscard]] MaterialFamily familyOf(uint32_t appearance) noexcept;  // FwMaterialPreset
 // Every pass that may draw such a material, whatever becomes of it.
-[[nodiscard]] DrawPassSet surfacePasses(const BurnMaterial& material, bool image);
+[[nodiscard]] DrawPassSet surfacePasses(MaterialFamily family, bool image);
 // `edge`: m, mean edge of the object's triangles.
 // `places`: of the object's vertices among the refined ones.
 // `doused`: something wetted it or put it out, some day. `warmed`: others' fires sent heat to it.

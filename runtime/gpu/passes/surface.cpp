@@ -23,33 +23,10 @@ constexpr float kSmallEdge = 0.03f;
 
 }  // namespace
 
-MaterialFamily familyOf(uint32_t appearance) noexcept {
-    switch (appearance) {
-        case FW_MATERIAL_PAINTED_WOOD:
-            return MaterialFamily::paint;
-        case FW_MATERIAL_NEWSPAPER:
-        case FW_MATERIAL_PAPER:
-        case FW_MATERIAL_COTTON:
-            return MaterialFamily::sheet;
-        case FW_MATERIAL_DRY_LEAF:
-        case FW_MATERIAL_GREEN_LEAF:
-        case FW_MATERIAL_THATCH:
-        case FW_MATERIAL_DRY_GRASS:
-            return MaterialFamily::plant;
-        case FW_MATERIAL_POLYESTER:
-        case FW_MATERIAL_LEATHER:
-        case FW_MATERIAL_PLASTIC:
-            return MaterialFamily::hide;
-        default:
-            return MaterialFamily::wood;
-    }
-}
-
-DrawPassSet surfacePasses(const BurnMaterial& material, bool image) {
+DrawPassSet surfacePasses(MaterialFamily family, bool image) {
     DrawPassSet passes = 0;
     const auto add = [&](SurfaceState state, Cull cull) {
-        passes |=
-            DrawPassSet(1) << surfacePass({familyOf(material.appearance), image, state, cull});
+        passes |= DrawPassSet(1) << surfacePass({family, image, state, cull});
     };
     for (const Cull cull : {Cull::back, Cull::front}) {
         add(SurfaceState::fresh, cull);

@@ -218,7 +218,8 @@ void VkBackend::destroyImage(uint32_t slot) {
     DrawPassSet passes = 0;
     for (const ObjectEntry& object : s.scene.objects)
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m)
-            if (shows(object.images[m])) passes |= surfacePasses(object.materials[m], false);
+            if (shows(object.images[m]))
+                passes |= surfacePasses(s.limits.appearances.familyOf(object.materials[m]), false);
     s.context.pipelines.need(passes);
     dropImage(s, entry);
     for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {

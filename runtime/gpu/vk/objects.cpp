@@ -268,8 +268,10 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     DrawPassSet passes = 0;
     for (uint32_t m = 0, first = 0; m < kMaterialsPerObject; first = mesh.materialEnd[m++])
         if (mesh.materialEnd[m] != first)
-            passes |= surfacePasses(m < init.materials.size() ? init.materials[m] : BurnMaterial{},
-                                    init.images[m] != 0);
+            passes |=
+                surfacePasses(s.limits.appearances.familyOf(
+                                  m < init.materials.size() ? init.materials[m] : BurnMaterial{}),
+                              init.images[m] != 0);
     s.context.pipelines.need(passes);
     UploadGuard staged(s.scene.uploads);
     MeshAdditions added;

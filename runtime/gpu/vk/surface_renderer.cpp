@@ -21,7 +21,7 @@ bool depthFirst(const ObjectEntry& object) noexcept {
 // How `item`'s material is drawn: whether fire may show on it, and its triangles far from fire
 // apart.
 void chooseSurface(const BackendState& s, const ObjectEntry& object, DrawItem& item) {
-    item.family = familyOf(object.materials[item.material].appearance);
+    item.family = s.limits.appearances.familyOf(object.materials[item.material]);
     item.burns = looksBurnt(object);
     item.depthFirst = depthFirst(object);
     item.coldReach = coldReach(s.scene.meshOf(object).texelEdge);

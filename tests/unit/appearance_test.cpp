@@ -18,7 +18,7 @@ namespace {
 using gpu::MaterialAppearance;
 
 TEST(AppearanceTable, EveryPresetIsComplete) {
-    for (uint32_t preset = 0; preset < kAppearanceCount; ++preset) {
+    for (uint32_t preset = 0; preset < FW_MATERIAL_PRESET_COUNT; ++preset) {
         const MaterialAppearance m = materialAppearance(preset);
         SCOPED_TRACE(preset);
         EXPECT_EQ(m.spreadRate > 0, preset != FW_MATERIAL_NONCOMBUSTIBLE);
@@ -39,13 +39,13 @@ TEST(AppearanceTable, EveryPresetIsComplete) {
 }
 
 TEST(AppearanceTable, OutOfRangePresetsDoNotBurn) {
-    EXPECT_EQ(materialAppearance(kAppearanceCount).spreadRate, 0.0f);
-    EXPECT_EQ(materialAppearance(0xFFFFFFFFu).spreadRate, 0.0f);
-    EXPECT_EQ(materialAppearance(kAppearanceCount).base, gpu::kBaseStone);
+    EXPECT_EQ(appearanceSpreadRate(FW_MATERIAL_PRESET_COUNT), 0.0f);
+    EXPECT_EQ(appearanceSpreadRate(0xFFFFFFFFu), 0.0f);
+    EXPECT_EQ(materialAppearance(FW_MATERIAL_PRESET_COUNT).base, gpu::kBaseStone);
 }
 
 TEST(AppearanceTable, CracksOpenWhileTheyGlow) {
-    for (uint32_t preset = 0; preset < kAppearanceCount; ++preset) {
+    for (uint32_t preset = 0; preset < FW_MATERIAL_PRESET_COUNT; ++preset) {
         const MaterialAppearance m = materialAppearance(preset);
         if (m.crackDepth > 0) {
             EXPECT_LT(m.crackTime, 0.6f * m.crackLife) << preset;
