@@ -30,6 +30,11 @@ FW_CONST uint kSurfacePaint = 32u; // on wood: film, blisters
 FW_CONST uint kSurfaceImage = 64u; // the object's image instead of a pattern
 FW_CONST uint kSurfaceCold = 128u; // only triangles far from all traces of fire
 
+#ifdef __cplusplus
+// The part of a material that selects its pipeline, besides its image; stone is drawn as wood.
+enum class MaterialFamily : uint8_t { wood, paint, sheet, plant, hide };
+#endif
+
 // Layers of the appearance texture array: 512^2 RGBA8, tiling, with mips.
 FW_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
 // R primary crack distance, G secondary, BA slopes of cracks.

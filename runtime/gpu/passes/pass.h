@@ -164,8 +164,6 @@ struct DrawPass {
     }
 };
 
-// The part of a material that selects its pipeline, besides its image; stone is drawn as wood.
-enum class MaterialFamily : uint8_t { wood, paint, sheet, plant, hide };
 // Fresh: no fire reached the object. Of others, cold triangles are far from all traces of fire.
 enum class SurfaceState : uint8_t { fresh, cold, burning };
 struct SurfaceKey {
