@@ -42,7 +42,8 @@ ProfilePaint paintOf(const fw::volume::Profile& profile) {
 
 ProfilePaint presetPaint(uint32_t preset) {
     fw::volume::Profile profile;
-    fw::volume::paintLook(fw::volume::presetDef(fw::volume::FlamePreset(preset)).look, profile);
+    fw::volume::paintLook(fw::volume::presetDef(fw::volume::FlamePreset(preset)).appearance,
+                          profile);
     return paintOf(profile);
 }
 
@@ -169,7 +170,7 @@ namespace {
 // Tints a preset's picture with the preset's own colour, if it has one.
 void tintPixels(uint32_t preset, std::vector<uint8_t>& rgba) {
     const fw::volume::FlameAppearance look =
-        fw::volume::presetDef(fw::volume::FlamePreset(preset)).look;
+        fw::volume::presetDef(fw::volume::FlamePreset(preset)).appearance;
     const float weight = look.tint[3];
     if (!(weight > 0)) return;
     // Without soot there is little glow to tint.

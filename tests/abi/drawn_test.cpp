@@ -94,14 +94,14 @@ TEST(DrawnMesh, EveryMaterialSlotShowsItsImage) {
     def.baseColors[3] = first;
     const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
-    std::vector<Color> picture = w.appearance();
+    std::vector<Color> picture = w.look();
     EXPECT_EQ(15 * 32, count(picture, 0, 15, red));
     EXPECT_EQ(14 * 32, count(picture, 17, 31, blue)) << "baseColor where a slot has no image";
     EXPECT_EQ(14 * 32, count(picture, 33, 47, green));
     EXPECT_EQ(15 * 32, count(picture, 49, 64, red));
     // A destroyed image leaves its slots to the material's own colour.
     ASSERT_EQ(FW_OK, fwWorld_DestroyImage(w.world, first));
-    picture = w.appearance();
+    picture = w.look();
     EXPECT_EQ(0, count(picture, 0, 15, red));
     EXPECT_EQ(15 * 32, count(picture, 0, 15, wooden));
     EXPECT_EQ(14 * 32, count(picture, 33, 47, green));
@@ -133,7 +133,7 @@ double shareDrawn(DrawnWorld& w, float alphaCutoff, int radius, bool below = fal
     def.flags = FW_BURNABLE_TWO_SIDED;
     const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
-    const std::vector<Color> picture = w.appearance(below);
+    const std::vector<Color> picture = w.look(below);
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
     const int drawn = count(picture, 0, 64, [](const Color& c) { return c.r + c.g + c.b > 15; });
     // Where a pixel has a colour, it is the picture's: no colour bleeds in from around it.
@@ -187,12 +187,12 @@ TEST(DrawnMesh, AnObjectMovedWhileAsleepBurnsAtItsNewPlace) {
         return count ? sum / float(count) : -1.0f;
     };
     wait(5);
-    const int all = count(w.appearance(), 0, 64, green);
+    const int all = count(w.look(), 0, 64, green);
     EXPECT_GT(all, 1500);
     def.transform[12] = 5;
     ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, id, def.transform));
     wait(5);
-    EXPECT_EQ(0, count(w.appearance(), 0, 64, green));
+    EXPECT_EQ(0, count(w.look(), 0, 64, green));
     EXPECT_NEAR(lit(5.2f), 5.2f, 0.4f);
     // Another object in its slot, which fire has not reached.
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
@@ -200,7 +200,7 @@ TEST(DrawnMesh, AnObjectMovedWhileAsleepBurnsAtItsNewPlace) {
     def.transform[12] = 0;
     ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
     wait(5);
-    EXPECT_EQ(all, count(w.appearance(), 0, 64, green));
+    EXPECT_EQ(all, count(w.look(), 0, 64, green));
     EXPECT_NEAR(lit(0.2f), 0.2f, 0.4f);
 }
 
@@ -222,7 +222,7 @@ TEST(DrawnMesh, BothSidesOfAnOpenMeshShowOneBurnMap) {
         for (const Color& c : picture) all += c.r + c.g + c.b;
         return all;
     };
-    const std::vector<Color> above = w.appearance(), below = w.appearance(true);
+    const std::vector<Color> above = w.look(), below = w.look(true);
     EXPECT_EQ(64 * 32, count(above, 0, 64, light));
     EXPECT_EQ(64 * 32, count(below, 0, 64, light));
     EXPECT_GT(sum(above), 5 * sum(below) / 4) << "the sun shines from above";
@@ -232,7 +232,7 @@ TEST(DrawnMesh, BothSidesOfAnOpenMeshShowOneBurnMap) {
     ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, nullptr));
     for (int i = 0; i < 30; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     // From below, x runs as from above: the same half has burnt.
-    const std::vector<Color> burnt = w.appearance(), under = w.appearance(true);
+    const std::vector<Color> burnt = w.look(), under = w.look(true);
     const auto changed = [&](const std::vector<Color>& now, const std::vector<Color>& then, int x0,
                              int x1) {
         int many = 0;
@@ -273,14 +273,14 @@ TEST(DrawnMesh, SkinnedStripsBurnAtTheirCurrentPlace) {
     const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     const auto lit = [](const Color& c) { return c.r + c.g + c.b > 30; };
-    EXPECT_EQ(64 * 32, count(w.appearance(), 0, 64, lit)) << "in the rest pose";
+    EXPECT_EQ(64 * 32, count(w.look(), 0, 64, lit)) << "in the rest pose";
     std::vector<float> places;
     const auto count3 = uint32_t(sheet.positions.size() / 3);
     bend(sheet, 3.14159f, 0.5f, places);  // a half circle 0.64 m wide, 0.5 m up
     ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, id, places.data(), nullptr, count3))
         << lastMessage(w.world);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.0f));
-    std::vector<Color> picture = w.appearance();
+    std::vector<Color> picture = w.look();
     EXPECT_EQ(0, count(picture, 0, 10, lit));
     EXPECT_EQ(0, count(picture, 54, 64, lit));
     EXPECT_EQ(36 * 32, count(picture, 14, 50, lit));
@@ -315,7 +315,7 @@ TEST(DrawnMesh, SkinnedStripsBurnAtTheirCurrentPlace) {
     std::vector<float> up(places.size(), 0.0f);
     for (size_t i = 1; i < up.size(); i += 3) up[i] = 2;
     ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, id, places.data(), up.data(), count3));
-    picture = w.appearance();
+    picture = w.look();
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
               fwWorld_SetVertexPositions(w.world, id, places.data(), nullptr, count3 - 1));
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("vertexCount is"));
@@ -358,7 +358,7 @@ TEST(DrawnMesh, ABurntSheetWithoutDamageLooksUnburnt) {
             << lastMessage(w.world);
     }
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
-    const std::vector<Color> fresh = w.appearance();
+    const std::vector<Color> fresh = w.look();
     for (int i = 0; i < 4; ++i) {
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.object = ids[i];
@@ -370,7 +370,7 @@ TEST(DrawnMesh, ABurntSheetWithoutDamageLooksUnburnt) {
         EXPECT_LT(0u, texels);
     }
     for (int k = 0; k < 60; ++k) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.25f));
-    const std::vector<Color> burnt = w.appearance();
+    const std::vector<Color> burnt = w.look();
     const auto there = [](const Color& c) { return c.r + c.g + c.b > 3; };
     FwObjectState first{};
     for (int i = 0; i < 4; ++i) {

@@ -19,7 +19,7 @@ const char* makeFire(fw::test::CompositeHost& host, FwTargetId& target) {
     if (target.index1 == 0 || fwWorld_CreateVolumetricFire(host.world(), &fire, &id) != FW_OK)
         return "no fire on a target with haze";
     const glm::vec3 at(0, 0.6f, 0);
-    host.appearance(at + glm::vec3(0, 0, 5.5f), at, 4);
+    host.look(at + glm::vec3(0, 0, 5.5f), at, 4);
     return nullptr;
 }
 

@@ -171,7 +171,7 @@ void drawHalf(benchmark::State& state, uint32_t particles, float away) {
     if (targets[0].index1 == 0 || targets[1].index1 == 0 ||
         !makeSparks(host.world(), particles, false, emitter))
         return state.SkipWithError("no particles at half resolution");
-    host.appearance({0, 2, away}, {0, 2, 0}, 2);
+    host.look({0, 2, away}, {0, 2, 0}, 2);
     double wall = 0, cpu = 0;
     for (int i = 0; i < 100; ++i)
         if (!host.frame(targets[0], 1.0f / 60, wall, cpu))

@@ -20,10 +20,10 @@ const char* makeFires(fw::test::CompositeHost& host, FwTargetId& target) {
         fwWorld_CreateFireEmitter(host.world(), &jet, &emitter) != FW_OK)
         return "no fires";
     const glm::vec3 at(0.3f, 0.7f, 0);
-    host.appearance(at + glm::vec3(0.064f, 0, 5), at, 4);
+    host.look(at + glm::vec3(0.064f, 0, 5), at, 4);
     host.second() = host.view();
     host.second().viewId = 1;
-    host.appearance(at - glm::vec3(0, 0, 5), at, 4);
+    host.look(at - glm::vec3(0, 0, 5), at, 4);
     return nullptr;
 }
 

@@ -311,17 +311,6 @@ gpu::AppearanceSources testAppearances() {
     static const std::pmr::vector<std::byte> profiles =
         components::bakeFireProfiles(std::pmr::get_default_resource());
     sources.profiles = profiles;
-    sources.viewParams = [](const gpu::ViewInput& input, gpu::ViewParams& out) {
-        components::ViewInputs inputs;
-        std::copy_n(input.viewport, 4, inputs.viewport);
-        inputs.now = input.now;
-        inputs.lightCount = input.lightCount;
-        inputs.lastLight = input.lastLight;
-        inputs.flameCapacity = input.flameCapacity;
-        inputs.seed = input.seed;
-        inputs.paceFactor = input.paceFactor;
-        out = components::makeViewParams(*input.view, inputs);
-    };
     return sources;
 }
 

@@ -39,8 +39,8 @@ TEST(AppearanceTable, EveryPresetIsComplete) {
 }
 
 TEST(AppearanceTable, OutOfRangePresetsDoNotBurn) {
-    EXPECT_EQ(appearanceSpreadRate(FW_MATERIAL_PRESET_COUNT), 0.0f);
-    EXPECT_EQ(appearanceSpreadRate(0xFFFFFFFFu), 0.0f);
+    EXPECT_EQ(materialAppearance(FW_MATERIAL_PRESET_COUNT).spreadRate, 0.0f);
+    EXPECT_EQ(materialAppearance(0xFFFFFFFFu).spreadRate, 0.0f);
     EXPECT_EQ(materialAppearance(FW_MATERIAL_PRESET_COUNT).base, gpu::kBaseStone);
 }
 

@@ -366,7 +366,7 @@ double springSpread(float share) {
         node.ring[1] = i + 1 < kNodes ? i + 1 : i;
         node.ringLength[0] = gpu::packHalf2x16({i ? kRest : 0.0f, i + 1 < kNodes ? kRest : 0.0f});
         model.particles.push_back(node);
-        model.embeddings[i].node = i;
+        model.embeddings[i].particle = i;
         for (uint32_t& other : model.embeddings[i].ring) other = i;
     }
     mesh::resetDeform(model, state);

@@ -31,7 +31,7 @@ std::string failure(const Do& act) {
 }
 
 struct Shown {
-    FlameAppearance look;
+    FlameAppearance appearance;
     FlameSize size;
     FlameScroll scroll;
     uint32_t seed = 1;
@@ -39,9 +39,9 @@ struct Shown {
     fw::gpu::FlameRecord record{};
     FlameNodes nodes{};
 
-    Shown(const FlameAppearance& l, float power, float diameter, float height) : look(l) {
+    Shown(const FlameAppearance& l, float power, float diameter, float height) : appearance(l) {
         size = {power, diameter, height, 1.0f};
-        paintLook(look, *profile);
+        paintLook(appearance, *profile);
         describe();
         stand();
     }
@@ -52,7 +52,7 @@ struct Shown {
         return {d.appearance, parts[0].power, parts[0].diameter, parts[0].height};
     }
     void describe() {
-        record = describeFlame(look, size, scroll, seed);
+        record = describeFlame(appearance, size, scroll, seed);
         record.glow = vec4(0.0f, 0.4f * size.height, 0.0f, 0.06f * size.diameter * size.diameter);
     }
     void stand() {  // straight up
@@ -62,14 +62,14 @@ struct Shown {
         curve.set(points, vec3(0, 1, 0));
         placeFlameNodes(curve, topOf(record), nodes);
     }
-    explicit Shown(const Flame& flame) : look(flame.def.appearance) {  // as it burns now
+    explicit Shown(const Flame& flame) : appearance(flame.def.appearance) {  // as it burns now
         size = flame.size;
-        paintLook(look, *profile);
+        paintLook(appearance, *profile);
         record = flame.record;
         nodes = flame.nodes;
     }
     void run(double seconds) {
-        advanceScroll(scroll, look, record, seconds);
+        advanceScroll(scroll, appearance, record, seconds);
         describe();
     }
 };

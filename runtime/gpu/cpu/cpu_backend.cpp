@@ -134,6 +134,7 @@ struct EventPass : PassBody {
     }
     void writeState(uint32_t slot, uint32_t texel, uint32_t worldTile, uint32_t,
                     uint32_t after) noexcept {
+        FW_ASSERT(!isSource(after) || after <= push.now + kStepTicks, "%u at %u", after, push.now);
         backend.setState(backend.at(slot), worldTile, texel, after, push.now + kStepTicks);
     }
     void texelChanged(uint32_t slot, uint32_t texel, TexelPlace, bool burns) noexcept {

@@ -96,10 +96,13 @@ struct ExchangePass : PassBody {
     std::pmr::vector<uint32_t>& occlusion = backend.occlusionCells;
 
     [[nodiscard]] ivec3 positionOf(uint32_t slot, uint32_t texel) const noexcept {
-        return backend.at(slot).domain->texels[texel].units();
+        const CpuObject& object = backend.at(slot);
+        FW_ASSERT(texel < object.state.size(), "texel %u of %zu", texel, object.state.size());
+        return object.domain->texels[texel].units();
     }
     [[nodiscard]] const BurnMaterial& materialOf(uint32_t slot, uint32_t texel) const noexcept {
         const CpuObject& object = backend.at(slot);
+        FW_ASSERT(texel < object.state.size(), "texel %u of %zu", texel, object.state.size());
         return object
             .materials[object.domain->texels[texel].materialFlags & (kMaterialsPerObject - 1)];
     }
@@ -136,6 +139,7 @@ struct ExchangePass : PassBody {
         return backend.warms[i].seen << 24;
     }
     [[nodiscard]] const FireSource& receiverSourceOf(uint32_t, uint32_t i) const noexcept {
+        FW_ASSERT(i < backend.warmCount, "source %u of %u", i, backend.warmCount);
         return *backend.warms[i].source;
     }
     void hotList(uint32_t, uint32_t worldTile, uint32_t bits) noexcept {

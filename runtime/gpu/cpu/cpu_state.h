@@ -329,6 +329,7 @@ struct PassBody {
         uint32_t worldTile;
     };
     [[nodiscard]] TexelPlace placeOfTexel(uint32_t slot, uint32_t texel) const noexcept {
+        FW_ASSERT(texel < backend.at(slot).state.size(), "texel %u", texel);
         return {backend.at(slot).worldTileOf(texel)};
     }
     [[nodiscard]] bool isRequestPass() const noexcept { return backend.isRequestPass; }

@@ -44,6 +44,7 @@ struct AppearanceSources {
     std::span<const std::byte> textures;
     // R16G16_SFLOAT, kProfileWidth x kProfileHeight, kFirePresets layers. Copied.
     std::span<const std::byte> profiles;
+
     [[nodiscard]] MaterialFamily familyOf(const BurnMaterial& material) const noexcept {
         return material.appearance < families.size() ? families[material.appearance]
                                                      : MaterialFamily::wood;
