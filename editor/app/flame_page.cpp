@@ -42,8 +42,8 @@ ProfilePaint paintOf(const fw::volume::Profile& profile) {
 
 ProfilePaint presetPaint(uint32_t preset) {
     fw::volume::Profile profile;
-    fw::volume::paintLook(fw::volume::presetDef(fw::volume::FlamePreset(preset)).appearance,
-                          profile);
+    fw::volume::paintDefaultProfile(
+        fw::volume::presetDef(fw::volume::FlamePreset(preset)).appearance, profile);
     return paintOf(profile);
 }
 

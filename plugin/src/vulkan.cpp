@@ -51,7 +51,7 @@ void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 constexpr DefRow kVulkanDefs[] = {FW_EACH_VULKAN_DEF(FW_ROW)};
 #undef FW_ROW
 
-// Of a frame that has begun.
+// Advances the world in a frame that has begun; ends its outside views if that fails.
 void advance(world::World& world, gpu::vk::VkBackend& backend, uint64_t frame, float deltaTime) {
     try {
         world.advance(frame, deltaTime);

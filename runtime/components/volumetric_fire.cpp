@@ -77,7 +77,7 @@ std::pmr::vector<std::byte> bakeFireProfiles(std::pmr::memory_resource* memory) 
     volume::Profile profile;
     all.resize(gpu::kFirePresets * sizeof profile.texels);
     for (uint32_t i = 0; i < gpu::kFirePresets; ++i) {
-        volume::paintLook(volume::presetDef(volume::FlamePreset(i)).appearance, profile);
+        volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset(i)).appearance, profile);
         std::memcpy(all.data() + i * sizeof profile.texels, profile.texels.data(),
                     sizeof profile.texels);
     }

@@ -158,7 +158,7 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
     return d;
 }
 
-void paintLook(const FlameAppearance& appearance, Profile& profile) {
+void paintDefaultProfile(const FlameAppearance& appearance, Profile& profile) {
     std::array<float, Profile::kTexels> kelvin, soot;
     for (uint32_t j = 0; j < gpu::kProfileHeight; ++j)
         for (uint32_t i = 0; i < gpu::kProfileWidth; ++i) {

@@ -69,7 +69,7 @@ struct FlamePresetDef {
 FlamePresetDef presetDef(FlamePreset preset) noexcept;
 
 // The default profile of an appearance.
-void paintLook(const FlameAppearance& appearance, Profile& profile);
+void paintDefaultProfile(const FlameAppearance& appearance, Profile& profile);
 
 // Heskestad: mean visible height, m; negative for wide, weak fires. Q kW, D m.
 float flameHeight(float power, float diameter) noexcept;

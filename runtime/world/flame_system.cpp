@@ -48,7 +48,8 @@ uint32_t FlameSystem::profileLayer(const FwVolumetricFireDef& def) {
     if (profiles_.size() <= def.preset) profiles_.resize(gpu::kFirePresets);
     if (!profiles_[def.preset]) {
         auto profile = core::Owned<volume::Profile>::make(context_.memory);
-        volume::paintLook(volume::presetDef(volume::FlamePreset(def.preset)).appearance, *profile);
+        volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset(def.preset)).appearance,
+                                    *profile);
         profiles_[def.preset] = std::move(profile);
     }
     return def.preset;

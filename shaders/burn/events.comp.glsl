@@ -18,6 +18,7 @@ void writeState(uint object, uint texel, uint worldTile, uint before, uint now) 
     if (isSource(now)) nowBurns(object, worldTile, push.now + kStepTicks);
 }
 
+#define FW_PASS_EVENTS
 #include "shared/event_pass.h"
 
 #ifdef FW_ALL_TEXELS

@@ -10,7 +10,7 @@ FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH) FW_WRITE(SCR
 #include "lib/predict_row.glsl"
 #include "lib/gather.glsl"
 
-// Of the row of eight texels from `at` on. Bit i: column i - 1 has a time. left, right: the row has
+// Bit i: column i - 1 of the row of eight texels from `at` on has a time. left, right: the row has
 // texels there.
 uint timesAt(uint at, bool left, bool right) {
     uvec4 a = predictQuads[at >> 2u], b = predictQuads[(at >> 2u) + 1u];

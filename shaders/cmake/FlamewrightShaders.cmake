@@ -40,7 +40,7 @@ function(flamewright_shaders target function)
         list(TRANSFORM words PREPEND "-D")
         string(MAKE_C_IDENTIFIER "k_${name}" variable)
         set(header ${generated}/${name}.inc)
-        # What every shader begins with. Its own text is included, so that errors name its lines.
+        # Every shader begins with this. Its own text is included, so that errors name its lines.
         set(begin ${generated}/${name}.glsl)
         # FW_VARYING declares what passes from the vertex to the fragment stage, for both.
         set(varying in)

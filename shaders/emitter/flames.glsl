@@ -1,4 +1,4 @@
-// What the stages of the flames' draws share.
+// Declarations that the stages of the flames' draws share.
 #include "lib/view.glsl"
 layout(location = 0) centroid FW_VARYING vec2 vPlace;  // x: -1..1, y: 0 foot .. 1 tip
 layout(location = 1) flat FW_VARYING vec4 vState;  // opacity, phase, kelvin, length over half width

@@ -93,7 +93,7 @@ struct Light {
 bool isRound() { return vField.w != 0u; }
 
 void addFire(Surface s, inout Light out_) {
-    float detail = vLook.x, body = vLook.y, strength = vLook.w;
+    float detail = vBody.x, body = vBody.y, strength = vBody.w;
     // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot
     // would only hide, and a flame would end in a stump.
     float y = vPlace.y * float(vField.z) / (2.6 * vSize.y), high = min(y, 1.0);
@@ -116,7 +116,7 @@ void addFire(Surface s, inout Light out_) {
 }
 
 void addSmoke(Surface s, inout Light out_) {
-    float detail = vLook.x, body = vLook.y, strength = vLook.w;
+    float detail = vBody.x, body = vBody.y, strength = vBody.w;
     float d = max(s.f.density * (1.0 + 1.3 * detail * s.rough) - 0.05 * detail, 0.0);
     float tau = 3.4 * d * d * (isRound() ? max(s.facing, 0.0) * 1.6 : 1.0);
     float share1 = clamp(1.0 - abs(body - 1.0), 0.0, 1.0);
@@ -137,7 +137,7 @@ void addSmoke(Surface s, inout Light out_) {
 }
 
 void addWater(Surface s, inout Light out_) {
-    float detail = vLook.x, body = vLook.y, strength = vLook.w;
+    float detail = vBody.x, body = vBody.y, strength = vBody.w;
     float d = max(s.f.density * (1.0 + 1.6 * detail * s.rough), 0.0);
     vec3 up = normalize(cross(s.normal, vAlong));
     // A sheet ends within a cell or two at pools and sources: full slopes there would make rims
@@ -174,7 +174,7 @@ void main() {
     float facing = dot(normal, toEye);
 
     // Two phases half a period apart: each is only visible while its displacement is short.
-    float turns = vLook.z / kPeriod + hash(uvec3(uint(vSize.w), 1u, 1u));
+    float turns = vBody.z / kPeriod + hash(uvec3(uint(vSize.w), 1u, 1u));
     float phase = turns - floor(turns), other = fract(turns + 0.5);
     float share = abs(2.0 * phase - 1.0);
     vec2 speed = f.motion * vTint.w;  // cells per second

@@ -60,7 +60,7 @@ void main() {
     vAlong = flat_ ? side * sense
                      : normalize(-d.right.xyz * (sin(lon) * d.size.x) -
                                  d.forward.xyz * (cos(lon) * d.size.z));
-    vLook = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);
+    vBody = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);
     vTint = d.tint;
     vField = uvec4(d.shown, d.width, d.height, flat_ ? 0u : 1u);
     vSize = vec4(d.size.x / float(d.width) * (flat_ ? 1.0 : kPi), d.tall,

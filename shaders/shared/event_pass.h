@@ -9,6 +9,7 @@
 #define heatMaterialOf(object, texel) heatMaterial(materialOfTexel(object, texel))
 #endif
 
+#ifdef FW_PASS_EVENTS
 // Does a jet pass all gates on its path, of which this event's kind holds the first?
 bool gatesLet(uint kind) {
     uint i = (kind >> kEventKindBits) - 1u;
@@ -145,3 +146,4 @@ void applyOne(uint i) {
             applyRun(i, texel);
     }
 }
+#endif

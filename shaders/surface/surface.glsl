@@ -1,4 +1,4 @@
-// What the stages of the surface pass share.
+// Declarations that the stages of the surface pass share.
 #include "lib/view.glsl"
 #include "surface/plume.glsl"
 

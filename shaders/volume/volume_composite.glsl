@@ -1,4 +1,4 @@
-// What the stages of volume_composite share.
+// Declarations that the stages of volume_composite share.
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 layout(push_constant) uniform Push { CompositePush draw; };

@@ -1,4 +1,4 @@
-// What the stages of volume_impostor share.
+// Declarations that the stages of volume_impostor share.
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 layout(push_constant) uniform Push { VolumeImpostor draw; };

@@ -302,7 +302,8 @@ class Volume : public GpuTest {
         std::vector<vec4> picture(kSide * kSide, vec4(0.0f));
         if (!lod::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
         volume::Profile profile;
-        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).appearance, profile);
+        volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset(preset)).appearance,
+                                    profile);
         if (own_) profile = *own_;
         const vec3 white =
             glm::mix(vec3(1.0f, 1.25f, 1.6f), vec3(1.0f), flame.record.tint.w) * gpu::kVolumeWhite;
@@ -413,7 +414,8 @@ class Volume : public GpuTest {
         gpu::VolumeDraw draw{};
         EXPECT_TRUE(lod::volumeDraw(view, low, high, 1, draw));
         volume::Profile profile;
-        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).appearance, profile);
+        volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset(preset)).appearance,
+                                    profile);
         const vec3 white =
             glm::mix(vec3(1.0f, 1.25f, 1.6f), vec3(1.0f), flame.record.tint.w) * gpu::kVolumeWhite;
         volume::MarchRules rules;
@@ -770,7 +772,8 @@ TEST_F(Volume, DrawsTheHostsProfile) {
     EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "an empty layer";
     const auto profile = std::make_unique<volume::Profile>();
     for (const uint32_t from : {FW_FIRE_TORCH, FW_FIRE_CAMP}) {
-        volume::paintLook(volume::presetDef(volume::FlamePreset(from)).appearance, *profile);
+        volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset(from)).appearance,
+                                    *profile);
         rig_->backend.setFireProfile(slot, profile->texels);
         own_ = profile.get();
         const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);

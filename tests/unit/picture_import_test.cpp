@@ -47,7 +47,7 @@ class PictureImport : public testing::Test {
 
 volume::Profile bonfire() {
     volume::Profile p;
-    volume::paintLook(volume::presetDef(volume::FlamePreset::Bonfire).appearance, p);
+    volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset::Bonfire).appearance, p);
     return p;
 }
 

@@ -22,7 +22,7 @@ struct BurningFlame {
     Profile profile;
     explicit BurningFlame(const FlameDef& def) {
         startFlame(flame, def, air);
-        paintLook(def.appearance, profile);
+        paintDefaultProfile(def.appearance, profile);
     }
 };
 

@@ -290,7 +290,7 @@ TEST(VolumeCollide, BoundsStayConservative) {
     Flame f;
     startFlame(f, campFire(), air);
     Profile profile;
-    paintLook(f.def.appearance, profile);
+    paintDefaultProfile(f.def.appearance, profile);
     std::mt19937 random(4);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     int lit = 0;
@@ -316,7 +316,7 @@ TEST(VolumeQuery, IsHotInsideTheFlameOnly) {
     Flame f;
     startFlame(f, campFire(), {});
     Profile profile;
-    paintLook(f.def.appearance, profile);
+    paintDefaultProfile(f.def.appearance, profile);
     const FlameAnswer core = queryFlame(f, profile, vec3(0, 0.15f, 0));
     EXPECT_TRUE(core.inside);
     EXPECT_GT(core.kelvin, 900.0f);
@@ -346,7 +346,7 @@ TEST(VolumeQuery, PushesAndIgnitesBodies) {
     Flame f;
     startFlame(f, campFire(), {});
     Profile profile;
-    paintLook(f.def.appearance, profile);
+    paintDefaultProfile(f.def.appearance, profile);
     const FlamePush paper = pushOf(f, profile, vec3(0, 0.4f, 0), 0.05f);
     EXPECT_GT(paper.force.y, 0.002f);
     EXPECT_LT(paper.force.y, 0.1f) << "a flame lifts ash and paper, not stones";

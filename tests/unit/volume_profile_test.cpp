@@ -25,7 +25,7 @@ using volume_scene::failure;
 
 Profile painted() {
     Profile p;
-    paintLook(presetDef(FlamePreset::CampFire).appearance, p);
+    paintDefaultProfile(presetDef(FlamePreset::CampFire).appearance, p);
     return p;
 }
 

@@ -41,7 +41,7 @@ struct Shown {
 
     Shown(const FlameAppearance& l, float power, float diameter, float height) : appearance(l) {
         size = {power, diameter, height, 1.0f};
-        paintLook(appearance, *profile);
+        paintDefaultProfile(appearance, *profile);
         describe();
         stand();
     }
@@ -64,7 +64,7 @@ struct Shown {
     }
     explicit Shown(const Flame& flame) : appearance(flame.def.appearance) {  // as it burns now
         size = flame.size;
-        paintLook(appearance, *profile);
+        paintDefaultProfile(appearance, *profile);
         record = flame.record;
         nodes = flame.nodes;
     }

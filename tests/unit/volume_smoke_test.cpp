@@ -131,7 +131,7 @@ TEST(VolumeSmoke, ByNightTheFlameLightsTheSmoke) {
         FlameDef def;
         def.appearance = p.appearance, def.power = p.power, def.diameter = p.diameter;
         Profile profile;
-        paintLook(def.appearance, profile);
+        paintDefaultProfile(def.appearance, profile);
         Flame flame;
         startFlame(flame, def, {});
         for (const float high : {1.0f, 1.5f, 2.0f}) {  // heights relative to the visible flame

@@ -155,7 +155,7 @@ std::unique_ptr<Scene> makeFlame(const BakeDef& def) {
         if (def.scene != named.name) continue;
         const volume::FlamePresetDef preset = volume::presetDef(named.preset);
         volume::Profile profile;
-        volume::paintLook(preset.appearance, profile);
+        volume::paintDefaultProfile(preset.appearance, profile);
         return std::make_unique<FlameScene>(def, preset, profile, vec2(named.width, named.height));
     }
     return nullptr;
@@ -172,7 +172,7 @@ void readShape(const FlameFlipbookDef& def, const volume::FlamePresetDef& preset
         for (size_t i = 0; i < def.texels.size(); ++i) planes[i % 2].push_back(def.texels[i]);
         volume::paintProfile(planes[0], planes[1], def.width, def.height, profile);
     } else {
-        volume::paintLook(preset.appearance, profile);
+        volume::paintDefaultProfile(preset.appearance, profile);
     }
 }
 

@@ -38,7 +38,8 @@ bool isCooked(const fs::path& path) { return path.extension() == ".fwprofile"; }
 bool read(const std::string& name, volume::Profile& profile) {
     for (uint32_t i = 0; i < uint32_t(volume::FlamePreset::Count); ++i)
         if (name == volume::presetName(volume::FlamePreset(i))) {
-            volume::paintLook(volume::presetDef(volume::FlamePreset(i)).appearance, profile);
+            volume::paintDefaultProfile(volume::presetDef(volume::FlamePreset(i)).appearance,
+                                        profile);
             return true;
         }
     std::string error;

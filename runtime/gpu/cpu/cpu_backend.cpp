@@ -140,6 +140,7 @@ struct EventPass : PassBody {
     void texelChanged(uint32_t slot, uint32_t texel, TexelPlace, bool burns) noexcept {
         backend.changedTexel(backend.at(slot), texel, burns, push.now);
     }
+#define FW_PASS_EVENTS
 #include "shared/event_pass.h"
 };
 

@@ -299,8 +299,8 @@ struct CpuBackend::State {
     uint32_t timesCount = 0;
 };
 
-// What bodies of passes (shared/exchange_pass.h, event_pass.h) use of the backend, by the names
-// that their text has. A slot without an object is one that takes no part.
+// The backend as the bodies of passes (shared/exchange_pass.h, event_pass.h) see it: members have
+// the names that these bodies use. A slot without an object takes no part.
 struct PassBody {
     CpuBackend::State& backend;
     struct Counters {

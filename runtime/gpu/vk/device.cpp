@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kMaxFamilies = 32;
 // The largest number of storage buffers that one of our passes binds.
-constexpr uint32_t kStorageBuffersNeeded = 20;
+constexpr uint32_t kStorageBuffersNeeded = 17;
 
 bool declared(const char* const* names, uint32_t count, const char* wanted) noexcept {
     for (uint32_t i = 0; i < count; ++i) {

@@ -115,40 +115,13 @@ void markObjectOfEvent(BackendState& s, const TexelEvent& event, uint32_t now) {
     s.surfaces.update(s, event.object, true);
 }
 
-// Uploads the changes of step `planned`. `first`: the plan's first; `iterate`: its front may move.
-StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planned,
-                  const FrameNeeds& needs, bool first, bool iterate, FrameRecorder& recorder) {
-    StepRecord step;
-    static_cast<StepPlan&>(step) = planned;
-    step.switches = plan.switches;
-    step.objectSlots = uint32_t(s.scene.objects.size());
-    step.iterate = iterate;
-    step.reduce = planned.reduce && needs.burning;
-    step.heat = planned.heat && needs.heating;
-    s.scene.airs = s.scene.airs || planned.rooms;
-    step.exchange = step.reduce && planned.exchange;
-    if (planned.exchangeUpdate) recordExchangeUpdate(s, *planned.exchangeUpdate, recorder);
-    step.links = s.simulation.links;
-    step.parts = s.scene.partMeshes != 0;
-    if (planned.occlusionUpdate) uploadOcclusion(s.simulation, *planned.occlusionUpdate, recorder);
-    step.rules.occluders = s.simulation.occluders;
-    setOcclusionPush(s.simulation.occlusion, step.rules);
-    recordMaterials(s, planned.materials, recorder);
-    step.wakeGroups = stageWakeGroups(s, planned.materials, needs.dense,
-                                      needs.rebuildsPrediction && first, recorder);
-    step.staged = recorder.stage(planned.events);
-    for (const TexelEvent& event : planned.events) {
-        markObjectOfEvent(s, event, planned.now);
-        if (addressesAll(event))
-            step.allTiles = std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
-    }
-    if (!needs.extensionRuns) return step;
+// The objects that an extension works on, each with the parity of this step.
+std::span<const ExtendedStep> beginExtendedStep(BackendState& s) {
     for (ExtendedStep& one : s.simulation.extended) {
         one.parity = s.scene.objects[one.object].extensionParity;
         s.scene.objects[one.object].extensionParity ^= 1;
     }
-    step.extended = s.simulation.extended;
-    return step;
+    return s.simulation.extended;
 }
 
 }  // namespace
@@ -162,7 +135,33 @@ void recordSteps(BackendState& s, const FramePlan& plan, const FrameNeeds& needs
     for (const StepPlan& planned : plan.steps) {
         iterates |= changesState(planned) || (planned.exchange && !s.simulation.burnEmpty);
         const bool first = &planned == plan.steps.data();
-        const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder);
+        StepRecord step;
+        static_cast<StepPlan&>(step) = planned;
+        step.switches = plan.switches;
+        step.objectSlots = uint32_t(s.scene.objects.size());
+        step.iterate = iterates;
+        step.reduce = planned.reduce && needs.burning;
+        step.heat = planned.heat && needs.heating;
+        s.scene.airs = s.scene.airs || planned.rooms;
+        step.exchange = step.reduce && planned.exchange;
+        if (planned.exchangeUpdate) recordExchangeUpdate(s, *planned.exchangeUpdate, recorder);
+        step.links = s.simulation.links;
+        step.parts = s.scene.partMeshes != 0;
+        if (planned.occlusionUpdate)
+            uploadOcclusion(s.simulation, *planned.occlusionUpdate, recorder);
+        step.rules.occluders = s.simulation.occluders;
+        setOcclusionPush(s.simulation.occlusion, step.rules);
+        recordMaterials(s, planned.materials, recorder);
+        step.wakeGroups = stageWakeGroups(s, planned.materials, needs.dense,
+                                          needs.rebuildsPrediction && first, recorder);
+        step.staged = recorder.stage(planned.events);
+        for (const TexelEvent& event : planned.events) {
+            markObjectOfEvent(s, event, planned.now);
+            if (addressesAll(event))
+                step.allTiles =
+                    std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
+        }
+        if (needs.extensionRuns) step.extended = beginExtendedStep(s);
         recordSimulation(recorder, s.simulation.lists, step);
         s.simulation.walks.front += step.iterate ? 1 : 0;
         s.simulation.walks.burn += step.reduce ? 1 : 0;
