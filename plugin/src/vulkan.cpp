@@ -244,7 +244,7 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
     components::checkWhole(count, "viewCount", 1, FW_MAX_VIEWS);
     const uint32_t stride = given->structSize;
     for (uint32_t i = 0; i < count; ++i) {
-        char name[16];
+        char name[24];
         std::snprintf(name, sizeof name, "views[%u]", i);
         const auto* bytes = reinterpret_cast<const std::byte*>(given) + size_t(i) * stride;
         out[i] = readDef(reinterpret_cast<const FwView*>(bytes));
