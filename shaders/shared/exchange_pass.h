@@ -219,7 +219,7 @@ uint gatherSources(uint slot) {
         strong -= weightBits[least];
         ++least;
     }
-    // Those above it, then those of at least half of it, up to the capacity.
+    // First sources above it, then sources of at least half of it, up to the capacity.
     uint low = 1u << least, listed = 0u, weak = strong;
     FW_EACH_SOURCE(if (weight >= low / 2u)
                        listSource(slot, weight >= low ? listed++ : weak++, from, source, entry);)
