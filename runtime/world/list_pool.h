@@ -50,11 +50,13 @@ class ListPool {
 
     // Room for `count` entries; throws std::bad_alloc, and then nothing has changed.
     void reserve(uint32_t slot, uint32_t count) {
+        FW_ASSERT(slot < lists_.size(), "%u of %zu lists", slot, lists_.size());
         if (count > lists_[slot].room) move(lists_[slot], sizeOf(count));
     }
     // A list that has shrunk moves to a smaller place, so that the pool holds what lists have and
     // not the most that each had. Throws std::bad_alloc, and then nothing has changed.
     void fit(uint32_t slot) {
+        FW_ASSERT(slot < lists_.size(), "%u of %zu lists", slot, lists_.size());
         ListPlace& list = lists_[slot];
         if (list.count == 0)
             drop(slot);
@@ -69,6 +71,7 @@ class ListPool {
     }
     // Before entry `at`, where reserve has found room.
     void insert(uint32_t slot, uint32_t at, const T& value) noexcept {
+        FW_ASSERT(slot < lists_.size(), "%u of %zu lists", slot, lists_.size());
         ListPlace& list = lists_[slot];
         FW_ASSERT(list.count < list.room && at <= list.count, "entry %u of %u", at, list.count);
         T* data = all_.data() + list.first;

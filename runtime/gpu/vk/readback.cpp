@@ -247,10 +247,10 @@ const Readback* VkBackend::nextReadback() {
             takeReadback(s, *slot, one);
         } else {
             results.given.runTiles = 0;
-            FrameInFlight* appearances =
-                one.appearances >= 0 ? &s.ring.slots()[size_t(one.appearances)] : nullptr;
-            if (appearances && appearances->frameIndex == one.ringFrame)
-                appearances->timers.read(s.device, one.frameIndex, results.times);
+            FrameInFlight* effects =
+                one.effectsSlot >= 0 ? &s.ring.slots()[size_t(one.effectsSlot)] : nullptr;
+            if (effects && effects->frameIndex == one.ringFrame)
+                effects->timers.read(s.device, one.frameIndex, results.times);
         }
         results.pendingFirst = (results.pendingFirst + 1) % uint32_t(results.pending.size());
         --results.pendingCount;

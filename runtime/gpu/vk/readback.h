@@ -10,9 +10,8 @@ struct BackendState;
 
 struct PendingReadback {  // in the order of frames
     uint64_t ringFrame = 0;
-    int32_t slot = -1;  // -1: nothing was simulated, the last figures hold
-    int32_t appearances =
-        -1;  // slot of a frame that recorded effects alone, whose passes took time
+    int32_t slot = -1;         // -1: nothing was simulated, the last figures hold
+    int32_t effectsSlot = -1;  // of a frame that recorded effects alone, whose passes took time
     uint64_t frameIndex = 0;
     uint32_t endTick = 0;
 };

@@ -275,7 +275,7 @@ void VkBackend::endOutside() {
         recordReadback(s, slot);
         if (s.open.planFrame) {
             PendingReadback one = pendingOf(s.open);
-            (s.open.readback ? one.slot : one.appearances) = int32_t(s.ring.indexOf(slot));
+            (s.open.readback ? one.slot : one.effectsSlot) = int32_t(s.ring.indexOf(slot));
             s.results.push(one);
         }
         s.barriers.end(s.device.table, s.open.commands);
