@@ -12,7 +12,7 @@ const uint kMost = 1024u;      // competing clusters
 const uint kMostLights = 64u;
 shared uint candidate[kMost];  // slots of clusters
 shared float score[kMost];
-shared uint candidates, bestScore, bestKey, bestAt;
+shared uint candidates, stronger, bestScore, bestKey, bestAt;
 shared uint lightPower[kMostLights], lightRelease[kMostLights];  // W: shining, and total
 shared uint homelessPower, homelessRelease;  // W of tiles and clusters without a light
 shared uint lightNear[kMostLights];          // 16 W: near enough to influence the light's position
@@ -49,6 +49,27 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
 }
 
 uint keyOf(uint slot) { return clusterOf(slot, 0u); }
+bool mayLight(uint slot) { return keyOf(slot) != 0u && clusterOf(slot, 10u) == 0u; }
+
+// Orders clusters by power, equal ones by key.
+uint rankOf(uint slot) {
+    return (floatBitsToUint(float(clusterOf(slot, 1u))) & ~0xfffu) | (keyOf(slot) >> 20u);
+}
+
+// The least rank of the kMost strongest clusters, so that thread order never decides which compete.
+uint leastRank(uint me) {
+    uint least = 0u;
+    for (uint bit = 1u << 31u; bit != 0u; bit >>= 1u) {
+        if (me == 0u) stronger = 0u;
+        barrier();
+        for (uint slot = me; slot < kClusterSlots; slot += 128u)
+            if (mayLight(slot) && rankOf(slot) >= (least | bit)) atomicAdd(stronger, 1u);
+        barrier();
+        if (stronger >= kMost) least |= bit;
+        barrier();
+    }
+    return least;
+}
 
 // Weighted mean position of a cluster, m, world.
 vec3 clusterPlace(uint slot) {
@@ -95,14 +116,18 @@ void main() {
         addTo(tile, flamePlaceOf(tile, large), large, 1u, release);
     }
     syncBuffers();
+    uint mine = 0u;
+    for (uint slot = me; slot < kClusterSlots; slot += 128u) mine += uint(mayLight(slot));
+    atomicAdd(candidates, mine);
+    barrier();
+    uint least = candidates > kMost ? leastRank(me) : 0u;
+    barrier();
+    if (me == 0u) candidates = 0u;
+    barrier();
     for (uint slot = me; slot < kClusterSlots; slot += 128u) {
-        if (keyOf(slot) == 0u || clusterOf(slot, 10u) != 0u) continue;
+        if (!mayLight(slot) || rankOf(slot) < least) continue;
         uint at = atomicAdd(candidates, 1u);
-        if (at >= kMost) {
-            atomicAdd(homelessPower, clusterOf(slot, 1u));
-            atomicAdd(homelessRelease, clusterOf(slot, 11u));
-            continue;
-        }
+        if (at >= kMost) continue;
         candidate[at] = slot;
         score[at] = float(clusterOf(slot, 1u));
     }
@@ -144,8 +169,8 @@ void main() {
     // Each cluster gives its power to the nearest light. The last light, which comes or goes, only
     // gets a share; the rest goes to the next nearest.
     float lastShare = found == wanted && found > 1u ? view.quads.z : 1.0;
-    for (uint i = me; i < competing; i += 128u) {
-        uint slot = candidate[i];
+    for (uint slot = me; slot < kClusterSlots; slot += 128u) {
+        if (!mayLight(slot)) continue;
         uint nearest = 0u, next = 0u;
         float least = 1e30, leastNext = 1e30;
         for (uint light = 0u; light < found; ++light) {
@@ -195,8 +220,8 @@ void main() {
         lights[light] = l;
     }
     // Requested quads, for the share of the available ones.
-    for (uint i = me; i < competing; i += 128u) {
-        uint slot = candidate[i];
+    for (uint slot = me; slot < kClusterSlots; slot += 128u) {
+        if (!mayLight(slot)) continue;
         vec2 near = vec2(clusterOf(slot, 1u), float(clusterOf(slot, 5u)) * 1e-5);
         float large = clamp(4.0 * uintBitsToFloat(clusterOf(slot, 6u)), 0.5, 4.0);
         vec2 around = clusterFire(clusterKey(ivec3(floor(clusterPlace(slot) / large)), large));

@@ -77,16 +77,31 @@ TEST_F(Houses, AHundredHousesStayWithinTheBudgetWithoutPopping) {
         ASSERT_EQ(fwWorld_Step(village.world, 0),
                   FW_OK);  // brings the readback of the last picture
     };
+    const auto lightsOf = [](const Village& village) {
+        std::vector<FwLight> lights(64);
+        lights.resize(fwWorld_GetLights(village.world, lights.data(), 64));
+        return lights;
+    };
     uint32_t requested = 0;
+    std::vector<FwLight> lights;
     {
         Village free;
         ASSERT_TRUE(free.make(context_, kHouses, 16000000, 4));
         warmUp(free);
         requested = free.stats().refinedTriangles;
+        lights = lightsOf(free);
     }
     Village village;
     ASSERT_TRUE(village.make(context_, kHouses, kBudget, 4));
     warmUp(village);
+    // More clusters than compete to be lights: which do must not depend on thread order.
+    const std::vector<FwLight> same = lightsOf(village);
+    ASSERT_EQ(same.size(), lights.size());
+    ASSERT_FALSE(same.empty());
+    for (size_t i = 0; i < same.size(); ++i) {
+        EXPECT_EQ(same[i].id, lights[i].id) << i;
+        EXPECT_EQ(same[i].power, lights[i].power) << i;
+    }
     Popping p;
     double refining = 0, drawing = 0;  // s of CPU for the same pictures
     uint32_t most = 0, least = ~0u, moves = 0, last = 0, burning = ~0u;
@@ -122,10 +137,10 @@ TEST_F(Houses, AHundredHousesStayWithinTheBudgetWithoutPopping) {
     EXPECT_GT(least, kBudget / 4);
     EXPECT_GT(requested, kBudget * 3 / 2);
     EXPECT_GE(moves, kFrames / 3);  // objects are refined in at least every third frame
-    // 2.2 and 5.6 as measured; with full detail 1.6 and 4.3. Per-pixel rims vary more than cut
-    // ones.
+    // 2.2 and 6.0 as measured. Per-pixel rims vary more than cut ones; the frames that change most
+    // are those in which a light leaves one house for another.
     EXPECT_LT(p.mean, 2.4);
-    EXPECT_LT(p.worst, 6.0);
+    EXPECT_LT(p.worst, 6.5);
     EXPECT_LT(p.block, rounds(45.0, 90.0));
     EXPECT_LT(p.share, rounds(0.02, 0.07));
     // Measured: 1.70 if all are refined whenever one is due, 1.44 round-robin. Soot is written in
