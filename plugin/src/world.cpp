@@ -359,7 +359,8 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
     return onWorld(__func__, world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, world->unit);
         bool acts = false;
-        const uint32_t count = w.ignite(def, &acts);
+        const uint32_t count = w.burn().ignite(def, &acts);
+        w.emitters().wetPatches(w.burn().splashes(), true);  // fuel that sticks to objects
         if (texels) *texels = count;
         if (acts) return FW_OK;
         // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a

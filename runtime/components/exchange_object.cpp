@@ -39,7 +39,7 @@ void placeExchangeObject(const Pose& pose, const mesh::BurnDomain& domain,
     while (out.shift < 24 && unit * longest * double(2u << out.shift) * 3 * 65536 < 2147483647.0)
         ++out.shift;
     gpu::ivec4* rows[3] = {&out.row0, &out.row1, &out.row2};
-    gpu::ivec4* turns[3] = {&out.turn0, &out.turn1, &out.turn2};
+    gpu::ivec4* rotations[3] = {&out.rotation0, &out.rotation1, &out.rotation2};
     gpu::ivec4 turned[3]{};
     turn(pose, turned);
     double origin[3];
@@ -57,7 +57,7 @@ void placeExchangeObject(const Pose& pose, const mesh::BurnDomain& domain,
             (*rows[i])[c] = whole(double(pose.rotation[i][c]) * double(pose.stretch[c]) * unit *
                                   double(1u << out.shift));
         (*rows[i])[3] = wholePlace(origin[i]);
-        *turns[i] = turned[i];
+        *rotations[i] = turned[i];
     }
     gpu::ivec3 boxLow(2000000000), boxHigh(-2000000000);
     for (uint32_t corner = 0; corner < 8; ++corner) {
@@ -69,7 +69,7 @@ void placeExchangeObject(const Pose& pose, const mesh::BurnDomain& domain,
     }
     for (int i = 0; i < 3; ++i) {
         FW_ASSERT(boxLow[i] < boxHigh[i], "axis %d: %d to %d mm", i, boxLow[i], boxHigh[i]);
-        (*turns[i])[3] = boxLow[i];
+        (*rotations[i])[3] = boxLow[i];
         out.high[i] = boxHigh[i];
     }
     out.high[3] = 0;
@@ -103,11 +103,11 @@ void fillExchangeObject(const BurnableMesh& object, const mesh::BurnDomain& doma
 }
 
 void placeHeatOccluder(const Pose& pose, const float halfSize[3], gpu::HeatOccluder& out) noexcept {
-    gpu::ivec4* turns[3] = {&out.turn0, &out.turn1, &out.turn2};
+    gpu::ivec4* rotations[3] = {&out.rotation0, &out.rotation1, &out.rotation2};
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)  // transposed: world to box
-            (*turns[r])[c] = whole(double(pose.rotation[c][r]) * 4096);
-        (*turns[r])[3] = wholePlace(pose.translation[r]);
+            (*rotations[r])[c] = whole(double(pose.rotation[c][r]) * 4096);
+        (*rotations[r])[3] = wholePlace(pose.translation[r]);
         out.size[r] = uint32_t(std::clamp(double(halfSize[r]) * double(pose.scale) *
                                               std::fabs(double(pose.stretch[r])) * kMillimetres,
                                           0.0, 30000.0));

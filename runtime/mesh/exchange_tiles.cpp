@@ -133,7 +133,7 @@ bool inside(const gpu::ivec3& p, const Box& box, int more) noexcept {
 
 Box wholeBox(const ContactSide& side) noexcept {
     const gpu::ExchangeObject& o = *side.place;
-    return {{o.turn0.w, o.turn1.w, o.turn2.w}, glm::ivec3(o.high)};
+    return {{o.rotation0.w, o.rotation1.w, o.rotation2.w}, glm::ivec3(o.high)};
 }
 
 bool burnsAt(const ContactSide& side, uint32_t texel) noexcept {

@@ -102,15 +102,15 @@ float awayFrom(vec3 a, vec3 b, vec3 c, vec3 d) noexcept {
 
 bool crossesBox(const Collider& c, vec3 from, vec3 to) noexcept {
     const vec4 back(-vec3(c.rotation), c.rotation.w);
-    const vec3 a = turned(back, from - c.place), way = turned(back, to - c.place) - a;
+    const vec3 a = turned(back, from - c.place), across = turned(back, to - c.place) - a;
     float in = 0.0f, out = 1.0f;
     for (int k = 0; k < 3; ++k) {
         const float half = c.extent[k] - kSkin;
-        if (std::abs(way[k]) < 1e-9f) {
+        if (std::abs(across[k]) < 1e-9f) {
             if (std::abs(a[k]) >= half) return false;
             continue;
         }
-        const float first = (-half - a[k]) / way[k], last = (half - a[k]) / way[k];
+        const float first = (-half - a[k]) / across[k], last = (half - a[k]) / across[k];
         in = std::max(in, std::min(first, last)), out = std::min(out, std::max(first, last));
     }
     return in < out;

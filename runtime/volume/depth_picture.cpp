@@ -48,23 +48,23 @@ vec3 slopeAt(const DepthPicture& picture, uint32_t at, uint32_t step, uint32_t b
         return a.shown && b.shown;
     };
     FW_ASSERT(at < picture.texels.size(), "texel %u", at);
-    vec3 ways[4];  // from two before it to two after
-    const bool there[4] = {before > 1 && between(at - 2 * step, at - step, ways[0]),
-                           before > 0 && between(at - step, at, ways[1]),
-                           after > 0 && between(at, at + step, ways[2]),
-                           after > 1 && between(at + step, at + 2 * step, ways[3])};
+    vec3 steps[4];  // from two before it to two after
+    const bool there[4] = {before > 1 && between(at - 2 * step, at - step, steps[0]),
+                           before > 0 && between(at - step, at, steps[1]),
+                           after > 0 && between(at, at + step, steps[2]),
+                           after > 1 && between(at + step, at + 2 * step, steps[3])};
     vec3 slope(0.0f);
     float least = 1e30f;
     for (const int k : {1, 2}) {
-        const float length = glm::length(ways[k]);
+        const float length = glm::length(steps[k]);
         if (!there[k] || length >= least) continue;
         const auto goesOn = [&](int other) {
-            return there[other] &&
-                   glm::dot(ways[other], ways[k]) > kStraight * glm::length(ways[other]) * length;
+            return there[other] && glm::dot(steps[other], steps[k]) >
+                                       kStraight * glm::length(steps[other]) * length;
         };
         if (!goesOn(k - 1) && !goesOn(k + 1)) continue;
         least = length;
-        slope = ways[k];
+        slope = steps[k];
     }
     return slope;
 }

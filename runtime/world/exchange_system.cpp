@@ -32,7 +32,7 @@ constexpr double kBrandsPerJoule = 2e-6;  // embers that matter
 
 mesh::Box boxOf(const gpu::ExchangeObject& o) noexcept {
     mesh::Box box;
-    const int low[3] = {o.turn0.w, o.turn1.w, o.turn2.w};
+    const int low[3] = {o.rotation0.w, o.rotation1.w, o.rotation2.w};
     for (int i = 0; i < 3; ++i) {
         box.low[i] = low[i];
         box.high[i] = o.high[i];
@@ -42,7 +42,7 @@ mesh::Box boxOf(const gpu::ExchangeObject& o) noexcept {
 
 void moveRecord(gpu::ExchangeObject& record, const double (&by)[3]) noexcept {
     gpu::ivec4* rows[] = {&record.row0, &record.row1, &record.row2};
-    gpu::ivec4* lows[] = {&record.turn0, &record.turn1, &record.turn2};
+    gpu::ivec4* lows[] = {&record.rotation0, &record.rotation1, &record.rotation2};
     for (int i = 0; i < 3; ++i) {
         movePast(rows[i]->w, by[i]);
         movePast(lows[i]->w, by[i]);
@@ -716,8 +716,8 @@ void ExchangeSystem::shiftOrigin(const double (&by)[3]) noexcept {
         if (owned.exchangeVersion != 0) moveRecord(owned.exchangeObject, by);
     transfer_.rebuild = transfer_.unsent = true;  // its grid is of the places before
     for (gpu::HeatOccluder& occluder : transfer_.occluders) {
-        gpu::ivec4* turns[] = {&occluder.turn0, &occluder.turn1, &occluder.turn2};
-        for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
+        gpu::ivec4* rotations[] = {&occluder.rotation0, &occluder.rotation1, &occluder.rotation2};
+        for (int i = 0; i < 3; ++i) movePast(rotations[i]->w, by[i]);
     }
     if (heatOcclusion_.grid.shape.cells() != 0)
         heatOcclusion_.unsent = heatOcclusion_.unpacked = true;

@@ -301,12 +301,6 @@ void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
     persistence_.checkFrame(deltaTime);
 }
 
-uint32_t World::ignite(const FwIgnitionDef& def, bool* acts) {
-    const uint32_t texels = burn_.ignite(def, acts);
-    emitters_.wetPatches(burn_.splashes(), true);
-    return texels;
-}
-
 void World::advance(uint64_t frameIndex, float deltaTime) {
     checkFrame(frameIndex, deltaTime);
     collectReadbacks();

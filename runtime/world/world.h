@@ -43,8 +43,6 @@ class World {
     [[nodiscard]] PersistenceSystem& persistence() noexcept { return persistence_; }
     [[nodiscard]] BudgetSystem& budget() noexcept { return budget_; }
 
-    // As BurnSystem::ignite; water falls on fuel that sticks to objects, too.
-    uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
     FwBurnableMeshId createBurnableMesh(const FwBurnableMeshDef& given);
     void destroyBurnableMesh(FwBurnableMeshId id);
     void setTransform(FwBurnableMeshId id, const float transform[16]);

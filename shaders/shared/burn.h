@@ -143,7 +143,7 @@ FW_CONST uint kTileTouched = 2u;      // an input changed: due now
 FW_CONST uint kTileLitBeside = 0x80000u;  // due only because neighbouring texels just caught
 FW_CONST uint kTileCorrected = 0x100000u; // a texel of this run was corrected, not just lit
 FW_CONST uint kTileBurning = 4u;      // in the burn list
-FW_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
+FW_CONST uint kTilePredict = 8u;      // in the first list of predict; << 1: in the second
 // `wake` may be something other than a known arrival.
 FW_CONST uint kTilePendingUnknown = 128u;
 FW_CONST uint kTileHot = 32u;         // in the hot list

@@ -46,9 +46,9 @@ struct ExchangeObject {  // object data of the exchange, latched at a step's sta
     ivec4 row0;        // world mm = w + (xyz . position >> shift); position: mesh units
     ivec4 row1;
     ivec4 row2;
-    ivec4 turn0;       // xyz: its rotation, Q12; w: low corner of its world box, mm
-    ivec4 turn1;
-    ivec4 turn2;
+    ivec4 rotation0;   // xyz: its rotation, Q12; w: low corner of its world box, mm
+    ivec4 rotation1;
+    ivec4 rotation2;
     ivec4 high;        // xyz: the other corner; w: wind of the zones there, see unpackWind
     uvec4 power0;      // 1/16 W of a flaming texel, by material
     uvec4 power1;
@@ -96,9 +96,9 @@ struct FireSource {    // fire in one cell of an object
 FW_SIZE(FireSource, 64)
 
 struct HeatOccluder {       // box that stops radiation, plumes and embers
-    ivec4 turn0;       // xyz: row of its rotation, world to box, Q12; w: middle, mm
-    ivec4 turn1;
-    ivec4 turn2;
+    ivec4 rotation0;   // xyz: row of its rotation, world to box, Q12; w: middle, mm
+    ivec4 rotation1;
+    ivec4 rotation2;
     uvec4 size;        // xyz: half of its sides, mm, [0, 30000]; w: 1 = in place
 };
 FW_SIZE(HeatOccluder, 64)
@@ -163,7 +163,7 @@ FW_FN ivec3 toWorldMm(FW_IN(ExchangeObject) o, ivec3 p) {
 }
 // Q12. n: normal in Q14.
 FW_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) {
-    return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14;
+    return dotRows(o.rotation0, o.rotation1, o.rotation2, n) >> 14;
 }
 FW_FN ivec3 tileMiddle(FW_IN(ExchangeTile) t) {
     return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
@@ -180,7 +180,7 @@ FW_FN uint absolute(int v) { return uint(v < 0 ? -v : v); }
 // Does the segment from a to b, without its ends, intersect the box?
 FW_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
     if (k.size.w == 0u) return false;
-    ivec3 c = ivec3(k.turn0.w, k.turn1.w, k.turn2.w);
+    ivec3 c = ivec3(k.rotation0.w, k.rotation1.w, k.rotation2.w);
     ivec3 d = (b - a) / 2;
     ivec3 m = a - c + d;
     uint far = maxU(maxU(absolute(m.x), absolute(m.y)), absolute(m.z));
@@ -192,8 +192,8 @@ FW_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
     int kept = length == 0u ? 0 : int(divide((length - spare) << 12u, length));  // Q12
     d = (d / 4 * kept) / 1024;
     // In the box's frame, 4 mm a unit: products stay below 2^31.
-    ivec3 o = dotRows(k.turn0, k.turn1, k.turn2, m) / 16384;
-    ivec3 h = dotRows(k.turn0, k.turn1, k.turn2, d) / 16384;
+    ivec3 o = dotRows(k.rotation0, k.rotation1, k.rotation2, m) / 16384;
+    ivec3 h = dotRows(k.rotation0, k.rotation1, k.rotation2, d) / 16384;
     uint ex = (k.size.x + 3u) >> 2u, ey = (k.size.y + 3u) >> 2u, ez = (k.size.z + 3u) >> 2u;
     uint hx = absolute(h.x), hy = absolute(h.y), hz = absolute(h.z);
     if (absolute(o.x) > ex + hx || absolute(o.y) > ey + hy || absolute(o.z) > ez + hz) return false;
@@ -497,7 +497,7 @@ FW_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
 }
 
 FW_FN ivec3 boxMiddle(FW_IN(ExchangeObject) o) {
-    ivec3 low = ivec3(o.turn0.w, o.turn1.w, o.turn2.w);
+    ivec3 low = ivec3(o.rotation0.w, o.rotation1.w, o.rotation2.w);
     return low + (ivec3(o.high.x, o.high.y, o.high.z) - low) / 2;
 }
 
@@ -639,12 +639,12 @@ FW_FN ivec3 acrossUp(ivec3 p, uint axis) {
 // Height of an object's top below a position, mm; kNoTop: the position is beside or under it.
 FW_CONST int kNoTop = -2147483647;
 FW_FN int topBelow(FW_IN(ExchangeObject) o, ivec3 at, uint axis) {
-    ivec3 low = acrossUp(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis);
+    ivec3 low = acrossUp(ivec3(o.rotation0.w, o.rotation1.w, o.rotation2.w), axis);
     ivec3 high = acrossUp(ivec3(o.high.x, o.high.y, o.high.z), axis);
     ivec3 p = acrossUp(at, axis);
     if (p.x < low.x || p.y < low.y || p.z < low.z || p.x > high.x || p.y > high.y || p.z > high.z)
         return kNoTop;
-    int top = (axis & 1u) != 0u ? heightOf(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis)
+    int top = (axis & 1u) != 0u ? heightOf(ivec3(o.rotation0.w, o.rotation1.w, o.rotation2.w), axis)
                                 : heightOf(ivec3(o.high.x, o.high.y, o.high.z), axis);
     return top <= heightOf(at, axis) ? top : kNoTop;
 }

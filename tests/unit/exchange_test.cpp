@@ -294,9 +294,9 @@ TEST(Exchange, PlacesAreExactToAMillimetre) {
             const double allowed = 1.6 + double(pose.scale) * 0.2;
             for (int k = 0; k < 3; ++k) {
                 EXPECT_NEAR(real[k], at[k], allowed);
-                EXPECT_GE(at[k], (k == 0   ? placed.place.turn0
-                                  : k == 1 ? placed.place.turn1
-                                           : placed.place.turn2)
+                EXPECT_GE(at[k], (k == 0   ? placed.place.rotation0
+                                  : k == 1 ? placed.place.rotation1
+                                           : placed.place.rotation2)
                                          .w -
                                      2);
                 EXPECT_LE(at[k], placed.place.high[k] + 2);

@@ -11,7 +11,7 @@ struct BackendState;
 // Where the lists are that live on between steps and frames.
 struct FrameLists {
     uint32_t row = kRowIteration;  // counters row of the front list
-    uint32_t parity = 0;           // 0: it is list A
+    uint32_t parity = 0;           // 0: the first of the two lists
     uint32_t burnParity = 0;
     uint32_t predictParity = 0;
     uint32_t hotParity = 0;
