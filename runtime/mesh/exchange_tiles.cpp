@@ -163,7 +163,10 @@ void placeNear(const ContactSide& side, const Box& other, std::pmr::vector<Conta
             if (!burnsAt(side, texel)) continue;
             const gpu::ivec3 p = placeOf(side, texel);
             if (!inside(p, other, int(gpu::kContactGap))) continue;
-            out.push_back({p, texel, tile * 4 + block});
+            Contacts::Place& place = out.emplace_back();  // in place: a copy waits for its parts
+            place.at = p;
+            place.texel = texel;
+            place.block = tile * 4 + block;
         }
     }
 }
