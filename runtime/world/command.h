@@ -144,6 +144,12 @@ struct MoveAndTurn {
     bool turns = false;  // else it keeps its direction
     float position[3] = {}, direction[kNumbers] = {};
 
+    MoveAndTurn() = default;
+    MoveAndTurn(uint32_t slotOf, const float* to, const float* along)  // null: not turned
+        : slot(slotOf), turns(along != nullptr) {
+        std::copy_n(to, 3, position);
+        if (along) std::copy_n(along, kNumbers, direction);
+    }
     template <class A>
     void serialize(A& a) {
         a(slot, turns, position);

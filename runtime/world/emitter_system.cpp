@@ -131,11 +131,7 @@ void EmitterSystem::move(FwFireEmitterId id, const float position[3], const floa
     const bool burns = bool(emitter.stream);
     if (burns) context_.recorder.mayChange();
     components::moveFireEmitter(emitter, position, direction);
-    if (!burns) return;
-    MoveEmitter command{id.index1 - 1, direction != nullptr};
-    std::copy_n(position, 3, command.position);
-    if (direction) std::copy_n(direction, 3, command.direction);
-    context_.recorder.record(command);
+    if (burns) context_.recorder.record(MoveEmitter(id.index1 - 1, position, direction));
 }
 
 void EmitterSystem::setPower(FwFireEmitterId id, float power) {

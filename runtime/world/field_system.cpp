@@ -65,11 +65,7 @@ void FieldSystem::move(FwParticleFieldId id, const float position[3], const floa
     if (wets) context_.recorder.mayChange();
     components::setFieldPlace(field, position, rotation);
     context_.backend.setFieldRules(id.index1 - 1, rulesOf(field));
-    if (!wets) return;
-    MoveField command{id.index1 - 1, rotation != nullptr};
-    std::copy_n(position, 3, command.position);
-    if (rotation) std::copy_n(rotation, 4, command.direction);
-    context_.recorder.record(command);
+    if (wets) context_.recorder.record(MoveField(id.index1 - 1, position, rotation));
 }
 
 void FieldSystem::setAmount(FwParticleFieldId id, float amount) {
