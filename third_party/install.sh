@@ -20,7 +20,7 @@ packages=(
     assimp-testmodels
 )
 test_packages=(
-    libgtest-dev libgmock-dev libbenchmark-dev libtinygltf-dev
+    libgtest-dev libgmock-dev libbenchmark-dev libtinygltf-dev libpng-dev
     spirv-tools
     xvfb xdotool imagemagick
     debootstrap

@@ -2,18 +2,13 @@
 // actual, expected and difference in the build folder. FLAMEWRIGHT_BLESS=1 writes the expected
 // files again.
 #pragma once
+#include "support/png_file.h"
+
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 namespace fw::test {
-
-struct Picture {
-    uint32_t width = 0, height = 0;
-    std::vector<uint8_t> rgb;
-};
 
 struct PictureTolerance {
     double mean = 1.0;       // mean absolute difference, in 1/255
@@ -21,8 +16,6 @@ struct PictureTolerance {
     int outlier = 32;
 };
 
-bool readPng(const std::string& path, Picture& picture);  // reads only what writePng writes
-bool writePng(const std::string& path, const Picture& picture);
 testing::AssertionResult picturesMatch(const Picture& actual, const Picture& expected,
                                        const PictureTolerance& tolerance);
 // Compares with tests/golden/<name>.png, or writes it.
