@@ -80,17 +80,18 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
     for (const Use& one : uses) {
         const Scope scope = scopeOf(one);
         State& state = states_[resourceOf(one.resource, view)];
-        if (scope.write) {
-            state = {scope.stages, scope.access & kOurWrites, 0, 0, 0};
-        } else {
-            state.readStages |= scope.stages;
-            // A write that was not visible is among this barrier's sources.
-            if (state.writeStages && !sees(state, scope)) {
-                state.visibleStages |= dstStages;
-                state.visibleAccess |= dstAccess;
-            }
+        if (scope.write) continue;
+        state.readStages |= scope.stages;
+        // A write that was not visible is among this barrier's sources.
+        if (state.writeStages && !sees(state, scope)) {
+            state.visibleStages |= dstStages;
+            state.visibleAccess |= dstAccess;
         }
     }
+    // Writes come last: a pass may write to the buffer that its own groups come from.
+    for (const Use& one : uses)
+        if (const Scope scope = scopeOf(one); scope.write)
+            states_[resourceOf(one.resource, view)] = {scope.stages, scope.access & kOurWrites};
 }
 
 void BarrierTracker::end(const Table& table, VkCommandBuffer commands) {
