@@ -23,7 +23,7 @@ test_packages=(
     libgtest-dev libgmock-dev libbenchmark-dev libtinygltf-dev libpng-dev
     spirv-tools
     xvfb xdotool imagemagick
-    debootstrap
+    debootstrap xz-utils
 )
 
 case "${1:-}" in

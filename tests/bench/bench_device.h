@@ -3,6 +3,7 @@
 #include <vulkan/vulkan.h>
 
 #include "flamewright/flamewright_vulkan.h"
+#include "support/device_rank.h"
 
 #include <algorithm>
 #include <chrono>
@@ -48,8 +49,9 @@ struct DeviceWithoutLayers {
         info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
         info.pApplicationInfo = &application;
         if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return;
-        uint32_t count = 1;
-        vkEnumeratePhysicalDevices(instance, &count, &physicalDevice);
+        const std::vector<VkPhysicalDevice> devices = rankedDevices(instance);
+        if (devices.empty()) return;
+        physicalDevice = devices[0];
         const float priority = 1;
         VkDeviceQueueCreateInfo queueInfo{};
         queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -21,6 +21,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -360,8 +361,8 @@ class Check {
         // Software devices: what shows a fault of the library, not of a picture, within minutes.
         if (software_)
             run.filter =
-                "^(VkContract|Logs/ReplayOnDevice|FieldEquality|SaveEquality|ExchangeEquality|"
-                "Target|HostClobber|VertexUnit)\\.|^FrontEquality\\.(Dense|One)";
+                "(^|/)[A-Za-z]*Equality\\.|^Logs/ReplayOnDevice\\.|^(VkContract|VkContractFloor|"
+                "VkThreads|Targets|HostClobber|VertexUnits|ParticlePass)\\.";
         const uint32_t threads = std::max(1u, uint32_t(std::thread::hardware_concurrency()));
         run.processes = software_ ? std::min(threads, 4u) : std::clamp(threads - 2, 1u, 8u);
         run.testSeconds = software_ ? 200 : 60;

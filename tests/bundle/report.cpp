@@ -229,7 +229,7 @@ class Page {
         if (!has("passes")) return;
         add("<h2>Time of each pass</h2><p>Milliseconds, mean over the frames. A frame is a step of "
             "the simulation, if one is due (32 in a second), and a picture. Passes below 1 % of "
-            "their scene are summed.</p>");
+            "their scene are summed.</p><div class=\"two\">");
         for (const json& timed : report_["passes"]) {
             const std::string title =
                 "<b>" + textOfValue(timed["name"]) + "</b>: " + textOfValue(timed["title"]);
@@ -238,13 +238,15 @@ class Page {
                     textOfValue(timed["fault"]) + "</span></p>");
                 continue;
             }
-            add("<p>" + title + " <span class=\"dim\">&ndash; " + timed["burningObjects"].dump() +
+            add("<div><p>" + title + "<br><span class=\"dim\">" + timed["burningObjects"].dump() +
                 " objects burn, " + timed["quads"].dump() + " quads, " +
                 timed["refinedTriangles"].dump() + " refined triangles, " +
                 timed["gpuMemoryMiB"].dump() + " MiB of device memory</span></p>");
             if (!timed["gpuTimers"]) add("<p>The device has no timers.</p>");
             passTable(timed["sizes"]);
+            add("</div>");
         }
+        add("</div>");
     }
     void passTable(const json& sizes) {
         std::string head = heading("part") + heading("pass");

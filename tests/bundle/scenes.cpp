@@ -227,7 +227,7 @@ std::unique_ptr<Scene> makeStreet() {
     def.maxRefinedTriangles = 60000;
     auto scene = makeTimed(def);
     addHouses(*scene, 100, FW_BURNABLE_LITE | FW_BURNABLE_REFINE);
-    const float eye[3] = {0, 5.5f, 15}, target[3] = {0, 1.0f, -8};
+    const float eye[3] = {0, 4.8f, 12}, target[3] = {0, 2.2f, -8};
     std::copy_n(eye, 3, scene->eye);
     std::copy_n(target, 3, scene->target);
     scene->zoom = 1.8f;
@@ -239,7 +239,7 @@ std::unique_ptr<Scene> makeManyCrates() {
     const Yard yard = makeYard(scene->world, 300);
     for (uint32_t i = 0; i < yard.crates.size(); ++i) lightCrate(scene->world, yard, i);
     scene->objects = yard.crates;
-    const float eye[3] = {7.6f, 6.5f, 25}, target[3] = {7.6f, 0, 8.5f};
+    const float eye[3] = {7.6f, 4.6f, 20}, target[3] = {7.6f, 0.2f, 10};
     std::copy_n(eye, 3, scene->eye);
     std::copy_n(target, 3, scene->target);
     return scene;
@@ -264,7 +264,7 @@ std::unique_ptr<Scene> makeParticles() {
         FwFireEmitterDef fire = fwDefaultFireEmitterDef();
         fire.shape = FW_EMITTER_DISC;
         fire.radius = 0.7f, fire.life = 1, fire.lifeVariance = 0, fire.power = 400;
-        fire.maxParticles = 10000, fire.rate = 12000;  // all alive, always
+        fire.maxParticles = 10000, fire.rate = 10000;  // all alive, always
         fire.size0 = 0.12f, fire.size1 = 0.3f, fire.speed = 2.5f;
         fire.position[0] = 2.6f * (float(i % 5) - 2), fire.position[2] = -4.0f * float(i / 5);
         FwFireEmitterId id{};
@@ -291,12 +291,12 @@ std::unique_ptr<Scene> makeBunny() {
 }
 
 constexpr TimedScene kTimedScenes[] = {
-    {"siege", "10 flamethrowers, 20 burning houses, 8 volumetric flames", makeSiege, 8},
-    {"houses100", "100 burning houses, refined", makeStreet, 8},
-    {"crates300", "300 burning crates", makeManyCrates, 8},
-    {"flames256", "256 volumetric flames", makeFlames, 2},
-    {"particles100k", "100,000 particles", makeParticles, 2},
-    {"bunny", "an animal of 62,208 triangles, burn map of 1024 x 1024", makeBunny, 10},
+    {"siege", "10 flamethrowers, 20 burning houses, 8 volumetric flames", makeSiege, 5},
+    {"houses100", "100 burning houses, refined", makeStreet, 5},
+    {"crates300", "300 burning crates", makeManyCrates, 4},
+    {"flames256", "256 volumetric flames", makeFlames, 1},
+    {"particles100k", "100,000 particles", makeParticles, 1.5f},
+    {"bunny", "an animal of 62,208 triangles, burn map of 1024 x 1024", makeBunny, 8},
 };
 
 }  // namespace
@@ -357,9 +357,9 @@ FwView Scene::view(float aspect) const {
     const auto dim = [](float(&light)[3], float factor) {
         for (float& channel : light) channel *= factor;
     };
-    dim(out.sunColor, 0.06f);
-    dim(out.ambientSky, 0.25f);
-    dim(out.ambientGround, 0.25f);
+    dim(out.sunColor, 0.15f);
+    dim(out.ambientSky, 0.5f);
+    dim(out.ambientGround, 0.5f);
     out.time = time_;
     return out;
 }

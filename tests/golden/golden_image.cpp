@@ -1,24 +1,15 @@
 #include "golden/golden_image.h"
 
 #include "support/bless.h"
+#include "support/test_data.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
 namespace fw::test {
-namespace {
 
 namespace fs = std::filesystem;
-
-// Beside the test program, in the build folder.
-fs::path failureFolder() {
-    std::error_code none;
-    const fs::path program = fs::read_symlink("/proc/self/exe", none);
-    return program.parent_path() / "golden";
-}
-
-}  // namespace
 
 testing::AssertionResult picturesMatch(const Picture& actual, const Picture& expected,
                                        const PictureTolerance& tolerance) {
@@ -47,12 +38,12 @@ testing::AssertionResult picturesMatch(const Picture& actual, const Picture& exp
 
 testing::AssertionResult matchesGolden(const std::string& name, const Picture& actual,
                                        const PictureTolerance& tolerance) {
-    const std::string path = std::string(FW_TEST_SOURCE_DIR) + "/golden/" + name + ".png";
+    const std::string path = testFile("golden/" + name + ".png");
     if (blessing()) {
         if (!writePng(path, actual)) return testing::AssertionFailure() << path << " not written";
         return testing::AssertionSuccess() << path << " written";
     }
-    const fs::path folder = failureFolder();
+    const fs::path folder = testOutput() / "golden";
     std::error_code none;
     fs::create_directories(folder, none);
     writePng((folder / (name + "_actual.png")).string(), actual);

@@ -5,6 +5,7 @@
 #include "replay/replay_log.h"
 #include "support/bless.h"
 #include "support/mesh_def.h"
+#include "support/test_data.h"
 #include "support/vulkan_device.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr float kStepSeconds = 1.0f / 32;
 constexpr uint32_t kStepTicks = 128;
 
 std::string pathOf(const std::string& name, const char* ending) {
-    return std::string(FW_TEST_SOURCE_DIR) + "/replay/" + name + ending;
+    return testFile("replay/" + name + ending);
 }
 
 Mesh generate(const ReplayMesh& recipe) {

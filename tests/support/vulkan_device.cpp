@@ -1,5 +1,7 @@
 #include "support/vulkan_device.h"
 
+#include "support/device_rank.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -118,11 +120,7 @@ std::unique_ptr<TestDevice> TestDevice::make(const DeviceOptions& wanted, std::s
     must(createMessenger(out->instance, &messenger, nullptr, &out->messenger_),
          "vkCreateDebugUtilsMessengerEXT");
 
-    uint32_t count = 0;
-    vkEnumeratePhysicalDevices(out->instance, &count, nullptr);
-    std::vector<VkPhysicalDevice> devices(count);
-    vkEnumeratePhysicalDevices(out->instance, &count, devices.data());
-    for (VkPhysicalDevice candidate : devices) {
+    for (VkPhysicalDevice candidate : rankedDevices(out->instance)) {
         uint32_t families = 0;
         vkGetPhysicalDeviceQueueFamilyProperties(candidate, &families, nullptr);
         std::vector<VkQueueFamilyProperties> properties(families);
