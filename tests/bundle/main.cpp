@@ -144,7 +144,7 @@ class Check {
     }
     void write() {
         writeText(out_ / "report.json", report_.dump(1) + "\n");
-        writeText(out_ / "report.html", htmlOf(report_, (out_ / "pictures").string()));
+        writeText(out_ / "report.html", htmlOf(report_, out_.string()));
     }
 
     void findFacts() {
@@ -255,10 +255,12 @@ class Check {
             {{"VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation"},
              {"VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"}});
         static const std::regex message("VUID-|SYNC-HAZARD|UNASSIGNED-|Validation (Error|Warning)");
+        // Newer layers have other names for their settings and remark on the old ones.
+        static const std::regex remark("VALIDATION-SETTINGS");
         std::istringstream lines(textOf(log("hashes_validated.log")));
         int count = 0;
         for (std::string line; std::getline(lines, line);) {
-            if (!std::regex_search(line, message)) continue;
+            if (!std::regex_search(line, message) || std::regex_search(line, remark)) continue;
             if (count++ < 8) validation["messages"].push_back(line.substr(0, 500));
         }
         validation["count"] = count;
@@ -269,8 +271,8 @@ class Check {
     }
 
     void timePasses() {
-        std::vector<std::string> rest = {"1", "1", "1280x720"};
-        if (!software_) rest = {"24", "48", "1920x1080", "3840x2160"};
+        std::vector<std::string> rest = {"0.4", "1", "1", "1280x720"};
+        if (!software_) rest = {"1", "24", "48", "1920x1080", "3840x2160"};
         report_["passes"] = json::array();
         for (const TimedScene& scene : timedScenes()) {
             std::vector<std::string> words = {
@@ -398,18 +400,19 @@ class Check {
 // ---- the command line -------------------------------------------------------------------------
 
 // A part for a process of its own: FILE hashes BACKEND, or
-// FILE scene NAME PICTURE WARMUP FRAMES SIZE...
+// FILE scene NAME PICTURE BURNS WARMUP FRAMES SIZE...
 int runPartHere(const std::vector<std::string>& words) {
     json result;
     if (words.size() == 3 && words[1] == "hashes") {
         result = hashFacts(words[2] == "cpu" ? FW_BACKEND_CPU : FW_BACKEND_VULKAN);
-    } else if (words.size() >= 7 && words[1] == "scene") {
+    } else if (words.size() >= 8 && words[1] == "scene") {
         TimingRequest request;
         request.scene = words[2];
         request.picture = words[3];
-        request.warmUp = uint32_t(std::stoul(words[4]));
-        request.frames = uint32_t(std::stoul(words[5]));
-        for (size_t i = 6; i < words.size(); ++i) {
+        request.burns = std::stof(words[4]);
+        request.warmUp = uint32_t(std::stoul(words[5]));
+        request.frames = uint32_t(std::stoul(words[6]));
+        for (size_t i = 7; i < words.size(); ++i) {
             auto& [width, height] = request.sizes.emplace_back();
             if (std::sscanf(words[i].c_str(), "%ux%u", &width, &height) != 2)
                 throw UsageError("--part: \"" + words[i] + "\" is not a size such as 1280x720");

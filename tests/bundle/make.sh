@@ -36,9 +36,9 @@ for file in "$dir"/bin/* "$dir"/lib/*; do
 done
 
 # For targets without the validation layer.
-layer=libVkLayer_khronos_validation.so
-strip --strip-unneeded -o "$dir/layers/$layer" "$(find /usr/lib -name "$layer" -print -quit)"
-sed "s|\"library_path\": *\"[^\"]*\"|\"library_path\": \"./$layer\"|" \
+layer=$(dpkg -L vulkan-validationlayers | grep '/libVkLayer_khronos_validation\.so$')
+cp "$layer" "$dir/layers/"
+sed "s|\"library_path\": *\"[^\"]*\"|\"library_path\": \"./$(basename "$layer")\"|" \
     /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json >"$dir/layers/validation.json"
 
 cp -r "$tests/golden" "$tests/replay" "$dir/tests/"

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -88,7 +90,10 @@ std::string heading(const std::string& text, bool number = false) {
 
 class Page {
  public:
-    Page(const json& report, const std::string& pictures) : report_(report), pictures_(pictures) {}
+    Page(const json& report, const std::string& folder)
+        : report_(report),
+          pictures_(folder + "/pictures"),
+          golden_(folder + "/logs/tests/golden") {}
 
     std::string write() {
         out_ = kHead;
@@ -208,18 +213,21 @@ class Page {
         return size["width"].dump() + " &times; " + size["height"].dump();
     }
 
+    static std::string picture(const std::string& name, const std::string& file) {
+        return "<img alt=\"" + escaped(name) + "\" src=\"data:image/png;base64," +
+               base64(textOf(file)) + "\">";
+    }
     void films() {
         if (!has("passes")) return;
         add("<h2>Pictures</h2><div class=\"films\">");
         for (const json& timed : report_["passes"]) {
             const std::string name = timed["name"];
-            const std::string bytes = textOf(pictures_ + "/" + name + "_small.png");
-            if (bytes.empty()) continue;
+            const std::string file = pictures_ + "/" + name + "_small.png";
+            if (!std::filesystem::exists(file)) continue;
             std::string times;
             for (const json& size : timed.value("sizes", json::array()))
                 times += "<br>" + milliseconds(size["ms"]) + " ms at " + sizeOf(size);
-            add("<figure><img alt=\"" + escaped(name) + "\" src=\"data:image/png;base64," +
-                base64(bytes) + "\"><figcaption><b>" + escaped(name) +
+            add("<figure>" + picture(name, file) + "<figcaption><b>" + escaped(name) +
                 "</b>: " + textOfValue(timed["title"]) + times + "</figcaption></figure>");
         }
         add("</div>");
@@ -342,9 +350,31 @@ class Page {
                     cell("<code>" + textOfValue(problem["message"]) + "</code>") + "</tr>");
             add("</table>");
         }
+        differences();
         for (const json& skip : t["skips"])
             add("<p class=\"dim\">" + skip["count"].dump() +
                 " skipped: " + textOfValue(skip["message"]) + "</p>");
+    }
+
+    // Pictures that differ from those in tests/golden.
+    void differences() {
+        constexpr const char* kEnding = "_difference.png";
+        std::vector<std::string> names;
+        std::error_code none;
+        for (const auto& entry : std::filesystem::directory_iterator(golden_, none)) {
+            const std::string name = entry.path().filename().string();
+            if (name.ends_with(kEnding))
+                names.push_back(name.substr(0, name.size() - std::strlen(kEnding)));
+        }
+        std::sort(names.begin(), names.end());
+        for (const std::string& name : names) {
+            add("<p>" + escaped(name) +
+                ": here, expected, difference times 4</p>"
+                "<div class=\"films\">");
+            for (const char* which : {"_actual.png", "_expected.png", kEnding})
+                add("<figure>" + picture(name + which, golden_ + "/" + name + which) + "</figure>");
+            add("</div>");
+        }
     }
 
     void bench() {
@@ -411,14 +441,13 @@ class Page {
     }
 
     const json& report_;
-    const std::string& pictures_;
-    std::string out_;
+    std::string pictures_, golden_, out_;
 };
 
 }  // namespace
 
-std::string htmlOf(const json& report, const std::string& pictures) {
-    return Page(report, pictures).write();
+std::string htmlOf(const json& report, const std::string& folder) {
+    return Page(report, folder).write();
 }
 
 }  // namespace fw::bundle

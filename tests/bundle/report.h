@@ -6,7 +6,7 @@
 
 namespace fw::bundle {
 
-// `report`: as in report.json. `pictures`: folder of the pictures "SCENE_small.png".
-std::string htmlOf(const nlohmann::json& report, const std::string& pictures);
+// `report`: as in report.json. `folder`: that of the report, with its pictures and logs.
+std::string htmlOf(const nlohmann::json& report, const std::string& folder);
 
 }  // namespace fw::bundle

@@ -132,7 +132,8 @@ json timeScene(const TimingRequest& request) {
         throw std::runtime_error("no scene is called \"" + request.scene + "\"");
     const Clock::time_point start = Clock::now();
     const std::unique_ptr<Scene> scene = found->make();
-    for (float t = 0; t < found->seconds; t += kSetUpTime) scene->advance(kSetUpTime);
+    for (float t = 0; t < found->seconds * request.burns; t += kSetUpTime)
+        scene->advance(kSetUpTime);
     json out = {{"setUpSeconds", secondsSince(start)}, {"sizes", json::array()}};
     for (const auto& [width, height] : request.sizes)
         out["sizes"].push_back(timeFrames(*scene, request, width, height, out["sizes"].empty()));

@@ -16,7 +16,8 @@ struct TimingRequest {
     std::string scene;    // a name of timedScenes()
     std::string picture;  // PNG file of the first size; "_small" before the ending: half of it
     std::vector<std::pair<uint32_t, uint32_t>> sizes;  // px
-    uint32_t frames = 1, warmUp = 1;                   // per size
+    float burns = 1;                                   // share of TimedScene::seconds
+    uint32_t warmUp = 1, frames = 1;                   // per size
 };
 // Mean milliseconds per pass over the frames, by the device's timers. Throws std::runtime_error.
 nlohmann::json timeScene(const TimingRequest& request);
