@@ -61,7 +61,7 @@ EmitterAppearance emitterAppearance(const FwFireEmitterDef& def) {
     const bool jet = (def.flags & FW_EMITTER_JET) != 0;
     if (jet) {
         // Tuned for 2 MW, and scaled to other powers.
-        const float scale = std::pow(power / 2000.0f, 0.25f);
+        const float scale = float(std::sqrt(std::sqrt(double(power / 2000.0f))));
         appearance.diameter = 0.2f * scale;
         appearance.rate = orElse(def.rate, 160);
         appearance.speed = orElse(def.speed, 12 * std::sqrt(scale));

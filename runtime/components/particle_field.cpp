@@ -100,10 +100,13 @@ void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) no
     const float* q = field.rotation;
     gpu::vec3 p((u - 0.5f) * field.size[0], v * field.size[1], 0);
     if (field.shape != FW_FIELD_BILLBOARD) {  // as field_draw.vert
-        const float lon = 6.2831853f * u, lat = 3.1415927f * (v - 0.5f);
-        p = gpu::vec3(std::cos(lat) * std::cos(lon) * field.size[0],
-                      (std::sin(lat) + 1) * field.size[1],
-                      -std::cos(lat) * std::sin(lon) * field.size[2]) *
+        // Doubles, as in all that decides a burn: C libraries differ in the last bit, which
+        // rounding drops.
+        const auto lon = double(6.2831853f * u), lat = double(3.1415927f * (v - 0.5f));
+        const auto level = float(std::cos(lat));
+        p = gpu::vec3(level * float(std::cos(lon)) * field.size[0],
+                      (float(std::sin(lat)) + 1) * field.size[1],
+                      -level * float(std::sin(lon)) * field.size[2]) *
             0.5f;
     }
     const gpu::vec3 axis(q[0], q[1], q[2]);

@@ -47,7 +47,8 @@ FieldRules fieldRules(const FieldDef& def) noexcept {
     rules.chaos = fixed(appearance.chaos, 256, 1024);
     rules.spread = fixed(appearance.spread, float(kMaxFieldSpread), float(kMaxFieldSpread));
     rules.memory = fixed(appearance.memory, 128, 128);
-    rules.death = fixed(1 - std::exp(-1 / (appearance.life * float(def.stepRate))), 65536, 65535);
+    rules.death = fixed(1 - float(std::exp(double(-1 / (appearance.life * float(def.stepRate))))),
+                        65536, 65535);
     rules.seed = def.seed;
     rules.width = def.width;
     rules.height = def.height;

@@ -48,6 +48,13 @@ void measure(const Places& places, BurnDomain& out) {
     out.linkShort = std::max(out.linkShort, *fifth);
 }
 
+// Newton's method from above: std::cbrt differs between C libraries, also for the cube of a scale.
+double cubeRoot(double x) noexcept {
+    double root = std::max(x, 1.0);
+    for (double next = root; (next -= (next - x / (next * next)) / 3) < root;) root = next;
+    return root;
+}
+
 }  // namespace
 
 BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory_resource* memory) {
@@ -69,7 +76,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     const glm::dvec3 size = high - low;
     const double extent = std::max({size.x, size.y, size.z, 1e-12});
     // As fine as the bake: a flattened axis keeps its share of the units.
-    const double fine = double(from.quantum) * std::cbrt(volume);
+    const double fine = double(from.quantum) * cubeRoot(volume);
     const double quantum = std::max({extent / 65535, fine, double(out.linkMax) / kLongestLink});
     out.quantum = floatAtLeast(quantum);
     FW_ASSERT(out.quantum > 0 && out.linkMax >= 0, "%g m, links of %g m", quantum,
