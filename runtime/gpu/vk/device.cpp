@@ -2,11 +2,21 @@
 
 #include "core/error.h"
 
-#include <dlfcn.h>
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
+
+#if defined(_WIN32)  // as windows.h, which defines macros such as min, declares them
+extern "C" __declspec(dllimport) void* __stdcall LoadLibraryA(const char* name);
+extern "C" __declspec(dllimport) void* __stdcall GetProcAddress(void* library, const char* name);
+#define FW_LOADER "vulkan-1.dll"
+#else
+#include <dlfcn.h>
+#define FW_LOADER "libvulkan.so.1"
+#define LoadLibraryA(name) dlopen(name, RTLD_NOW | RTLD_LOCAL)
+#define GetProcAddress dlsym
+#endif
 
 namespace fw::gpu::vk {
 namespace {
@@ -90,18 +100,18 @@ void Device::adoptHost(const FwVulkanHost& host) {
 
 void Device::make() {
     own = true;
-    library_ = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (!library_)
+    // Stays open: layers keep destructors of their own for the process's end.
+    void* const library = LoadLibraryA(FW_LOADER);
+    if (!library)
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
-                   "No Vulkan loader: libvulkan.so.1 cannot be opened. Give a device "
-                   "(FwVulkanHost) or use "
-                   "FW_BACKEND_CPU.");
-    const auto get =
-        reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library_, "vkGetInstanceProcAddr"));
+                   "No Vulkan loader: " FW_LOADER
+                   " cannot be opened. Give a device (FwVulkanHost) or use FW_BACKEND_CPU.");
+    const auto get = reinterpret_cast<PFN_vkGetInstanceProcAddr>(
+        GetProcAddress(library, "vkGetInstanceProcAddr"));
     const auto createInstance =
         get ? reinterpret_cast<PFN_vkCreateInstance>(get(nullptr, "vkCreateInstance")) : nullptr;
     if (!createInstance)
-        core::fail(FW_ERROR_UNSUPPORTED_DEVICE, "libvulkan.so.1 offers no vkCreateInstance.");
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE, FW_LOADER " offers no vkCreateInstance.");
 
     Typed<VkApplicationInfo> application;
     application.pEngineName = "Flamewright";
@@ -200,8 +210,6 @@ void Device::close() noexcept {
     }
     handle = VK_NULL_HANDLE;
     instance = VK_NULL_HANDLE;
-    // The loader stays open: layers keep destructors of their own for the process's end.
-    library_ = nullptr;
 }
 
 void Device::notifyLost() noexcept {

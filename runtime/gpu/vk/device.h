@@ -67,7 +67,6 @@ class Device {
     void close() noexcept;
 
     const core::Log& log_;
-    void* library_ = nullptr;  // libvulkan.so.1, own device only
     std::atomic<bool> lost_{false};
 };
 
