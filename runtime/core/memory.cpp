@@ -12,7 +12,6 @@ void* Memory::do_allocate(size_t size, size_t alignment) {
                        : ::operator new(size, std::align_val_t(alignment), std::nothrow);
     if (!memory) throw std::bad_alloc();
     bytes_.fetch_add(size, std::memory_order_relaxed);
-    allocations_.fetch_add(1, std::memory_order_relaxed);
     return memory;
 }
 

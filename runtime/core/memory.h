@@ -1,4 +1,4 @@
-// CPU memory through the host's callbacks, as a std::pmr resource, with counters.
+// CPU memory through the host's callbacks, as a std::pmr resource, with a count of bytes.
 // One per context. Thread-safe if the host's callbacks are (the defaults are).
 #pragma once
 #include "flamewright/flamewright.h"
@@ -15,11 +15,8 @@ class Memory final : public std::pmr::memory_resource {
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    // Bytes allocated now, and the number of all allocations.
+    // Bytes allocated now.
     [[nodiscard]] size_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
-    [[nodiscard]] uint64_t allocations() const noexcept {
-        return allocations_.load(std::memory_order_relaxed);
-    }
 
  private:
     void* do_allocate(size_t size, size_t alignment) override;  // throws std::bad_alloc
@@ -30,7 +27,6 @@ class Memory final : public std::pmr::memory_resource {
 
     FwCallbacks callbacks_;
     std::atomic<size_t> bytes_{0};
-    std::atomic<uint64_t> allocations_{0};
 };
 
 }  // namespace fw::core

@@ -142,10 +142,6 @@ void EmitterSystem::setPower(FwFireEmitterId id, float power) {
     if (burns) context_.recorder.record(SetEmitterPower{{id.index1 - 1, power}});
 }
 
-void EmitterSystem::setHidden(FwFireEmitterId id, bool hidden) {
-    setFlag(emitters_.get(id).def.flags, FW_EMITTER_HIDDEN, hidden);
-}
-
 void EmitterSystem::fillState(FwFireEmitterId id, FwFireEmitterState& state) {
     FireEmitter& emitter = emitters_.get(id);
     components::fillEmitterState(emitter, airOf(emitter, 0), state);

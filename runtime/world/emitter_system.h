@@ -41,7 +41,9 @@ class EmitterSystem {
     void destroy(FwFireEmitterId id);
     void move(FwFireEmitterId id, const float position[3], const float* direction);
     void setPower(FwFireEmitterId id, float power);
-    void setHidden(FwFireEmitterId id, bool hidden);
+    void setHidden(FwFireEmitterId id, bool hidden) {
+        setFlag(emitters_.get(id).def.flags, FW_EMITTER_HIDDEN, hidden);
+    }
     void fillState(FwFireEmitterId id, FwFireEmitterState& state);
 
     void beginFrame() noexcept { ++sweeps_; }

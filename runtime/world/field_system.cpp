@@ -77,10 +77,6 @@ void FieldSystem::setAmount(FwParticleFieldId id, float amount) {
     if (wets) context_.recorder.record(SetFieldAmount{{id.index1 - 1, amount}});
 }
 
-void FieldSystem::setHidden(FwParticleFieldId id, bool hidden) {
-    setFlag(fields_.get(id)->data.flags, FW_FIELD_HIDDEN, hidden);
-}
-
 void FieldSystem::paint(FwParticleFieldId id, const uint8_t* paint, const uint8_t* walls) {
     components::ParticleField& field = fields_.get(id)->data;
     components::ParticleField before(context_.memory);

@@ -51,7 +51,9 @@ class FieldSystem {
     void destroy(FwParticleFieldId id);
     void move(FwParticleFieldId id, const float position[3], const float rotation[4]);
     void setAmount(FwParticleFieldId id, float amount);
-    void setHidden(FwParticleFieldId id, bool hidden);
+    void setHidden(FwParticleFieldId id, bool hidden) {
+        setFlag(fields_.get(id)->data.flags, FW_FIELD_HIDDEN, hidden);
+    }
     void paint(FwParticleFieldId id, const uint8_t* paint, const uint8_t* walls);
     void fillState(FwParticleFieldId id, FwParticleFieldState& state);
 

@@ -111,14 +111,6 @@ void FlameSystem::setTrack(FwVolumetricFireId id, const FwFireTrackDef* def) {
     predictAhead(fire);
 }
 
-void FlameSystem::setHidden(FwVolumetricFireId id, bool hidden) {
-    setFlag(fires_.get(id)->data.flags, FW_FIRE_HIDDEN, hidden);
-}
-
-void FlameSystem::setTier(FwVolumetricFireId id, uint32_t tier) {
-    components::setFireTier(fires_.get(id)->data, tier, "tier");
-}
-
 void FlameSystem::fillState(FwVolumetricFireId id, FwVolumetricFireState& state) {
     components::fillFireState(fires_.get(id)->data, state);
 }

@@ -79,8 +79,12 @@ class FlameSystem {
     void move(FwVolumetricFireId id, const float position[3]);
     void setPower(FwVolumetricFireId id, float power);
     void setPoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count);
-    void setHidden(FwVolumetricFireId id, bool hidden);
-    void setTier(FwVolumetricFireId id, uint32_t tier);
+    void setHidden(FwVolumetricFireId id, bool hidden) {
+        setFlag(fires_.get(id)->data.flags, FW_FIRE_HIDDEN, hidden);
+    }
+    void setTier(FwVolumetricFireId id, uint32_t tier) {
+        components::setFireTier(fires_.get(id)->data, tier, "tier");
+    }
     void setTrack(FwVolumetricFireId id, const FwFireTrackDef* def);
     void fillState(FwVolumetricFireId id, FwVolumetricFireState& state);
     void ask(const float point[3], FwFireSample& answer);

@@ -15,14 +15,10 @@ namespace fw::world {
 
 constexpr double kFar = 1e6;  // m: of every place
 
-inline void moveBy(float (&place)[3], const double (&by)[3]) noexcept {
-    for (int i = 0; i < 3; ++i) place[i] = float(double(place[i]) + by[i]);
-}
-inline void moveBy(double (&place)[3], const double (&by)[3]) noexcept {
-    for (int i = 0; i < 3; ++i) place[i] += by[i];
-}
-inline void moveBy(gpu::vec3& place, const double (&by)[3]) noexcept {
-    for (int i = 0; i < 3; ++i) place[i] = float(double(place[i]) + by[i]);
+template <class Place>
+inline void moveBy(Place& place, const double (&by)[3]) noexcept {
+    for (int i = 0; i < 3; ++i)
+        place[i] = std::remove_reference_t<decltype(place[i])>(double(place[i]) + by[i]);
 }
 // Where something was: its owner may be elsewhere by now, and this leaves the limits of space.
 template <class Place>
