@@ -1,6 +1,7 @@
 // Functions that create or take a context.
 #include "components/volumetric_fire.h"
 #include "core/owned.h"
+#include "gpu/cpu/cpu_backend.h"
 #include "objects.h"
 #include "world/mesh_input.h"
 
@@ -23,6 +24,30 @@ void freeContext(FwContext* context) noexcept {
     const FwCallbacks callbacks = context->callbacks;
     core::Memory last(callbacks);
     std::pmr::polymorphic_allocator<>(&last).delete_object(context);
+}
+
+// Bakes and burns a small mesh: true if it burns as in every exact build.
+bool burnsExactly() {
+    static constexpr float kPositions[] = {0, 0, 0, 0.31f, 0.02f, 0.07f, 0.05f, 0.23f, 0.11f};
+    static constexpr uint16_t kIndices[] = {0, 1, 2};
+    core::Memory memory({});
+    const core::Log silent({});
+    gpu::cpu::CpuBackend backend(&memory, 0);
+    world::World world(fwDefaultWorldDef(), backend, silent, &memory);
+    FwMeshDef mesh = fwDefaultMeshDef();
+    mesh.positions = kPositions, mesh.vertexCount = 3, mesh.texelsPerMetre = 40;
+    mesh.indices = kIndices, mesh.indexCount = 3, mesh.indexSize = 2;
+    FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
+    object.mesh = world.scene().createMesh(mesh);
+    object.materials[0] = world.scene().createMaterial(fwDefaultMaterialDef());
+    FwIgnitionDef ball = fwDefaultIgnitionDef();
+    ball.object = world.createBurnableMesh(object);
+    world.burn().ignite(ball);
+    world.advance(1, 0.5f);
+    world.queries().requestBurnMap(ball.object);
+    world.advance(2, 0);
+    const world::BurnMapCopy* map = world.queries().fetchBurnMap(ball.object);
+    return map && world::hashState(map->ticks, map->heat) == 0xfbb51fbf5e5a80c7;
 }
 
 // True: the cooked bytes are in `buffer`. *size: room in it, then what there is; a buffer that is
@@ -84,6 +109,12 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
         if (def.backend == FW_BACKEND_CPU && def.vulkan)
             core::refuse(
                 "FwContextDef::vulkan is given and backend is FW_BACKEND_CPU; choose one.");
+        static const bool isExact = burnsExactly();  // once in a process
+        if (!isExact)
+            core::Log(callbacks).write(
+                FW_LOG_WARNING,
+                "This build is not exact: saves, replays and network games differ from those of "
+                "other builds. Compile it with -ffp-contract=off and without -ffast-math.");
         core::Memory first(callbacks);  // the context's own block precedes its counters
         auto* context = std::pmr::polymorphic_allocator<>(&first).new_object<FwContext>(callbacks);
         try {
