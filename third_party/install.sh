@@ -1,9 +1,10 @@
 #!/bin/bash
 # Installs the Debian 12 packages this project needs, and only those that are missing. Says what it
 # installs. With nothing missing it returns at once and needs no network.
-# Usage: third_party/install.sh [--samples | --clang]
+# Usage: third_party/install.sh [--samples | --clang | --long]
 #   --samples    leave out the packages that only the tests need
 #   --clang      and the second compiler, which only tests/run --clang needs
+#   --long       and what only tests/run --long needs: that compiler, cross compilers and emulators
 set -euo pipefail
 
 packages=(
@@ -26,12 +27,19 @@ test_packages=(
     debootstrap xz-utils
 )
 
+long_packages=(
+    clang
+    g++-aarch64-linux-gnu qemu-user
+    g++-mingw-w64-x86-64-posix wine64
+)
+
 case "${1:-}" in
     --samples) ;;
     --clang) packages+=("${test_packages[@]}" clang) ;;
+    --long) packages+=("${test_packages[@]}" "${long_packages[@]}") ;;
     "") packages+=("${test_packages[@]}") ;;
     *)
-        echo "usage: $0 [--samples | --clang]" >&2
+        echo "usage: $0 [--samples | --clang | --long]" >&2
         exit 2
         ;;
 esac

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -42,19 +43,18 @@ struct Host {
         if (host->failAt >= 0 &&
             (number == host->failAt || (host->failAlways && number > host->failAt)))
             return nullptr;
-        const size_t step = alignment < sizeof(void*) ? sizeof(void*) : alignment;
-        void* memory = std::aligned_alloc(step, (size + step - 1) / step * step);
+        void* memory = ::operator new(size, std::align_val_t(alignment), std::nothrow);
         if (memory) {
             host->bytes += int64_t(size);
             ++host->blocks;
         }
         return memory;
     }
-    static void FW_CALL release(void* userData, void* memory, size_t size, size_t) {
+    static void FW_CALL release(void* userData, void* memory, size_t size, size_t alignment) {
         auto* host = static_cast<Host*>(userData);
         host->bytes -= int64_t(size);
         --host->blocks;
-        std::free(memory);
+        ::operator delete(memory, std::align_val_t(alignment), std::nothrow);
     }
     static void FW_CALL log(void* userData, int32_t level, const char* message) {
         auto* host = static_cast<Host*>(userData);

@@ -278,7 +278,8 @@ class SessionDraw {
             Act& shift = act(Act::shift);
             for (int i = 0; i < 3; ++i) shift.numbers[i] = side * shift_[i];
         } else if (!objects_.empty()) {
-            Act& play = act(once(4) ? Act::stopPlay : Act::play, any(objects_));
+            const uint32_t name = any(objects_);
+            Act& play = act(once(4) ? Act::stopPlay : Act::play, name);
             play.numbers[0] = once(2) ? between(0, 0.5f) : 0.0f;
             play.numbers[1] = between(0.5f, 4);
         }
@@ -768,6 +769,20 @@ class SessionWorld {
     std::map<uint32_t, FwFireEmitterId> jets_;
     std::map<uint32_t, FwParticleFieldId> fields_;
 };
+
+// Until all readbacks have arrived.
+inline void settle(SessionWorld& w) {
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0)) << lastMessage(w.world);
+}
+
+// True if a command changes where later reports of earlier events are.
+inline bool drops(const Session& session, uint32_t frame) {
+    return std::any_of(session.frames[frame].begin(), session.frames[frame].end(),
+                       [](const Act& act) {
+                           return act.kind == Act::dropObject || act.kind == Act::dropRoom ||
+                                  act.kind == Act::moveObject || act.kind == Act::shift;
+                       });
+}
 
 // A baked burn of the first mesh of every session.
 inline Bytes burnOfSession(FwContext* context) {

@@ -292,19 +292,6 @@ TEST(Save, RefusesAnOlderVersionByItsNumber) {
 
 // ---- backends
 
-// Until all readbacks have arrived.
-void settle(SessionWorld& w) {
-    for (int i = 0; i < 6; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0)) << lastMessage(w.world);
-}
-
-bool drops(const Session& session, uint32_t frame) {
-    return std::any_of(session.frames[frame].begin(), session.frames[frame].end(),
-                       [](const Act& act) {
-                           return act.kind == Act::dropObject || act.kind == Act::dropRoom ||
-                                  act.kind == Act::moveObject || act.kind == Act::shift;
-                       });
-}
-
 // A device reports frames some frames later. Events, figures and saves agree once all readbacks
 // have arrived. Objects move and drop only then, because event places are those at the time of the
 // report.

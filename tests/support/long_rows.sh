@@ -11,7 +11,7 @@ source "$here/../third_party/setup.sh"
 named=${1:-}
 [[ -z $named || -f $here/long/$named.sh ]] ||
     fw_usage_error "--long \"$named\" is none of: $(basename -s .sh "$here"/long/*.sh | paste -s -d ' ')"
-"$fw_root/third_party/install.sh"
+"$fw_root/third_party/install.sh" --long
 results="$fw_root/build/long"
 tree=$(cd "$fw_root" && { git rev-parse HEAD && git diff HEAD || true; } 2>/dev/null | sha256sum)
 if [[ ! -f $results/tree || $(cat "$results/tree") != "$tree" ]]; then
