@@ -100,7 +100,7 @@ void main() {
     for (uint i = me; i < kClusterHeader + kClusterSlots * kClusterWords; i += 128u)
         clusters[i] = 0u;
     if (me == 0u) {
-        candidates = homelessPower = homelessRelease = 0u;
+        candidates = stronger = homelessPower = homelessRelease = 0u;
         drawArgs[0] = 6u;
         for (uint i = 1u; i < kFlameOrder; ++i) drawArgs[i] = 0u;
     }
@@ -116,14 +116,12 @@ void main() {
         addTo(tile, flamePlaceOf(tile, large), large, 1u, release);
     }
     syncBuffers();
-    uint mine = 0u;
-    for (uint slot = me; slot < kClusterSlots; slot += 128u) mine += uint(mayLight(slot));
-    atomicAdd(candidates, mine);
+    for (uint slot = me; slot < kClusterSlots; slot += 128u)
+        if (mayLight(slot)) atomicAdd(stronger, 1u);
     barrier();
-    uint least = candidates > kMost ? leastRank(me) : 0u;
+    bool tooMany = stronger > kMost;
     barrier();
-    if (me == 0u) candidates = 0u;
-    barrier();
+    uint least = tooMany ? leastRank(me) : 0u;
     for (uint slot = me; slot < kClusterSlots; slot += 128u) {
         if (!mayLight(slot) || rankOf(slot) < least) continue;
         uint at = atomicAdd(candidates, 1u);

@@ -211,7 +211,7 @@ TEST_F(HostDraw, ResizingEveryFrameAllocatesNothing) {
         };
         if (f == kWarmUp) {
             (void)takeCounts();
-            allocations = rig_->memory.allocations();
+            allocations = rig_->allocations;
         }
         gpu::StepPlan step;
         step.now = endTick_;
@@ -230,7 +230,7 @@ TEST_F(HostDraw, ResizingEveryFrameAllocatesNothing) {
                                  << asked.memory << " allocations, " << asked.pipelines
                                  << " pipelines, " << asked.objects << " objects";
     EXPECT_EQ(asked.passes, 0u);
-    EXPECT_EQ(rig_->memory.allocations(), allocations);
+    EXPECT_EQ(rig_->allocations, allocations);
     EXPECT_GE(asked.draws, uint64_t(kFrames));
     rig_->context.unregisterTarget(target);
 }

@@ -7,6 +7,7 @@
 #include "fire/presets.h"
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <new>
 
 #include <algorithm>
 #include <array>
@@ -368,10 +369,24 @@ FrameAnswer copyAnswer(const gpu::Readback& readback) {
     return answer;
 }
 
+// Callbacks that count allocations.
+static FwCallbacks countingMemory(std::atomic<uint64_t>& count) {
+    FwCallbacks callbacks{};
+    callbacks.userData = &count;
+    callbacks.allocate = [](void* counted, size_t size, size_t alignment) -> void* {
+        ++*static_cast<std::atomic<uint64_t>*>(counted);
+        return ::operator new(size, std::align_val_t(alignment), std::nothrow);
+    };
+    callbacks.release = [](void*, void* memory, size_t, size_t alignment) {
+        ::operator delete(memory, std::align_val_t(alignment));
+    };
+    return callbacks;
+}
+
 VkRig::VkRig(TestDevice& device, uint32_t inFlight, uint64_t budget,
              const gpu::vk::WorldLimits& limits, PFN_vkGetInstanceProcAddr entry)
     : host(device.host()),
-      memory(FwCallbacks{}),
+      memory(countingMemory(allocations)),
       log(FwCallbacks{}),
       context((entry ? host.getInstanceProcAddr = entry : nullptr, &host), budget, &memory, log),
       backend(context, limits, &memory, log),

@@ -7,6 +7,7 @@
 #include "support/meshes.h"
 #include "support/vulkan_device.h"
 
+#include <atomic>
 #include <functional>
 #include <random>
 
@@ -112,6 +113,7 @@ class VkRig {
     std::vector<FrameAnswer> finish();
 
     FwVulkanHost host;
+    std::atomic<uint64_t> allocations{0};  // through `memory`
     core::Memory memory;
     core::Log log;
     gpu::vk::Context context;
