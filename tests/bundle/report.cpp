@@ -388,7 +388,8 @@ class Page {
                 continue;
             }
             std::string counters;
-            for (const auto& [name, value] : row.value("counters", json::object()).items()) {
+            const json values = row.value("counters", json::object());
+            for (const auto& [name, value] : values.items()) {
                 char text[96];
                 std::snprintf(text, sizeof text, "%s %.4g  ", name.c_str(), value.get<double>());
                 counters += escaped(text);
