@@ -143,7 +143,9 @@ class Check {
         write();
     }
     void write() {
-        writeText(out_ / "report.json", report_.dump(1) + "\n");
+        // Output of other programs may hold anything.
+        writeText(out_ / "report.json",
+                  report_.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
         writeText(out_ / "report.html", htmlOf(report_, out_.string()));
     }
 
