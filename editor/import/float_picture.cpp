@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <exception>
+#include <fstream>
 #include <memory>
 #include <system_error>
+
+#include "import/exr_header.h"
+#include "import/image_decode.h"
 
 namespace fwimport {
 namespace {
@@ -21,6 +25,17 @@ std::string lowered(std::string text) {
 std::string reasonOf(const std::string& text) {
     const std::string line = text.substr(0, text.find('\n'));
     return line.empty() ? "it cannot be read" : line;
+}
+
+// The whole file if it is EXR, otherwise its first bytes.
+std::vector<uint8_t> headOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::vector<uint8_t> bytes(4);
+    file.read(reinterpret_cast<char*>(bytes.data()), 4);
+    if (!file || bytes[0] != 0x76 || bytes[1] != 0x2f) return {};
+    bytes.resize(std::filesystem::file_size(path));
+    file.read(reinterpret_cast<char*>(bytes.data() + 4), std::streamsize(bytes.size()) - 4);
+    return bytes;
 }
 
 bool refused(const std::filesystem::path& path, const std::string& what, std::string& error) {
@@ -38,6 +53,9 @@ int FloatPicture::channel(const std::string& name) const {
 
 bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::string& error) {
     try {
+        std::string unfit;
+        if (!checkExrHeader(headOf(path), kMaxPictureSide, unfit))
+            return refused(path, unfit, error);
         OIIO::ImageSpec request;
         request["oiio:UnassociatedAlpha"] = 1;
         const auto input = OIIO::ImageInput::open(path.string(), &request);
@@ -62,6 +80,15 @@ bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::
                                std::to_string(kMaxPictureChannels) + "]",
                            error);
         if (spec.deep) return refused(path, "its pixels are deep; they must be flat", error);
+        const uint64_t unpacked =
+            sizeof(float) * uint64_t(spec.width) * uint64_t(spec.height) * uint64_t(spec.nchannels);
+        const uint64_t limit = mostUnpacked(std::filesystem::file_size(path));
+        if (unpacked > limit)
+            return refused(path,
+                           "its pixels take " + std::to_string(unpacked) +
+                               " bytes; the limit for a file of its size is " +
+                               std::to_string(limit) + ". Make it smaller",
+                           error);
         FloatPicture read;
         read.width = uint32_t(spec.width);
         read.height = uint32_t(spec.height);

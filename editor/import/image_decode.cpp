@@ -8,6 +8,8 @@
 #include <exception>
 #include <string_view>
 
+#include "import/exr_header.h"
+
 namespace fwimport {
 namespace {
 
@@ -33,20 +35,20 @@ const char* nameFor(std::span<const uint8_t> bytes) {
     return nullptr;
 }
 
-// Encodes linear light as sRGB bytes.
-void encodeSrgb(std::span<const float> linear, size_t channels, std::span<uint8_t> bytes) {
+// Encodes linear light as sRGB bytes, four to a pixel.
+void encodeSrgb(std::span<const float> linear, size_t channels, std::span<uint8_t> rgba) {
     for (size_t i = 0; i < linear.size(); ++i) {
         const float value = linear[i] > 0 ? std::min(linear[i], 1.0f) : 0.0f;  // NaN becomes 0
         const bool alpha = channels % 2 == 0 && i % channels == channels - 1;
         const double shown = alpha ? double(value) : toSrgb(double(value));
-        bytes[i] = static_cast<uint8_t>(std::lround(255 * shown));
+        rgba[i / channels * 4 + i % channels] = static_cast<uint8_t>(std::lround(255 * shown));
     }
 }
 
-// Converts to straight alpha; `most`: value of full scale.
+// Converts to straight alpha; `stride`: values per pixel, `most`: value of full scale.
 template <typename T>
-void divideByAlpha(std::span<T> values, size_t channels, float most) {
-    for (size_t i = 0; i + channels <= values.size(); i += channels) {
+void divideByAlpha(std::span<T> values, size_t channels, size_t stride, float most) {
+    for (size_t i = 0; i + stride <= values.size(); i += stride) {
         const auto alpha = static_cast<float>(values[i + channels - 1]) / most;
         for (size_t c = 0; c + 1 < channels && alpha > 0; ++c)
             values[i + c] =
@@ -75,6 +77,7 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
                                 : "it is none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP";
         return false;
     }
+    if (!checkExrHeader(bytes, kMaxImageSide, error)) return false;
     try {
         OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());
         // Disables premultiplication, which is the default. The DDS reader never multiplies, and
@@ -104,13 +107,26 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
         }
         const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
         const auto stride = static_cast<size_t>(channels);
-        std::vector<uint8_t> raw(pixels * stride);
         const bool light = spec.format.basetype == OIIO::TypeDesc::FLOAT ||
                            spec.format.basetype == OIIO::TypeDesc::HALF;
-        std::vector<float> linear(light ? raw.size() : 0);
-        const OIIO::TypeDesc wanted = light ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
-        void* into = light ? static_cast<void*>(linear.data()) : raw.data();
-        if (!input->read_image(0, 0, 0, channels, wanted, into)) {
+        const uint64_t unpacked = pixels * (4 + (light ? sizeof(float) * stride : 0));
+        if (unpacked > mostUnpacked(bytes.size())) {
+            error = "its " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                    " pixels take " + std::to_string(unpacked) + " bytes; the limit for " +
+                    std::to_string(bytes.size()) + " bytes of file is " +
+                    std::to_string(mostUnpacked(bytes.size())) + ". Make it smaller";
+            return false;
+        }
+        DecodedImage result;
+        result.width = static_cast<uint32_t>(spec.width);
+        result.height = static_cast<uint32_t>(spec.height);
+        result.rgba.assign(pixels * 4, 255);
+        std::vector<float> linear(light ? pixels * stride : 0);
+        const bool read =
+            light ? input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, linear.data())
+                  : input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, result.rgba.data(),
+                                      4);
+        if (!read) {
             error = "it cannot be decoded: " + input->geterror();
             return false;
         }
@@ -120,22 +136,13 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
             channels % 2 == 0 &&
             (kind == "openexr" ||
              (kind == "tiff" && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0));
-        if (multiplied && light) divideByAlpha<float>(linear, stride, 1.0f);
-        if (multiplied && !light) divideByAlpha<uint8_t>(raw, stride, 255.0f);
-        if (light) encodeSrgb(linear, stride, raw);
-        DecodedImage result;
-        result.width = static_cast<uint32_t>(spec.width);
-        result.height = static_cast<uint32_t>(spec.height);
-        result.rgba.assign(pixels * 4, 255);
-        for (size_t i = 0; i < pixels; ++i) {
-            const uint8_t* from = &raw[i * stride];
-            uint8_t* to = &result.rgba[i * 4];
-            const bool grey = channels <= 2;
-            to[0] = from[0];
-            to[1] = from[grey ? 0 : 1];
-            to[2] = from[grey ? 0 : 2];
-            if (channels == 2) to[3] = from[1];
-            if (channels == 4) to[3] = from[3];
+        if (multiplied && light) divideByAlpha<float>(linear, stride, stride, 1.0f);
+        if (multiplied && !light) divideByAlpha<uint8_t>(result.rgba, stride, 4, 255.0f);
+        if (light) encodeSrgb(linear, stride, result.rgba);
+        for (size_t i = 0; i < pixels && channels <= 2; ++i) {
+            uint8_t* pixel = &result.rgba[i * 4];
+            if (channels == 2) pixel[3] = pixel[1];
+            pixel[1] = pixel[2] = pixel[0];
         }
         image = std::move(result);
         return true;

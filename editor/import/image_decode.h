@@ -2,6 +2,7 @@
 // RGBA8, one level.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,6 +16,12 @@ struct DecodedImage {
 };
 
 constexpr uint32_t kMaxImageSide = 8192;  // pixels
+
+// Memory that a file of `packed` bytes may unpack to, so that a small file cannot use up a
+// machine's.
+constexpr uint64_t mostUnpacked(uint64_t packed) {
+    return std::max(uint64_t{240} << 20, 100 * packed);
+}
 
 // Inverse sRGB transfer function for values in [0, 1].
 double toLinear(double stored);
