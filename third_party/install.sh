@@ -3,7 +3,7 @@
 # installs. With nothing missing it returns at once and needs no network.
 # Usage: third_party/install.sh [--samples | --clang | --long]
 #   --samples    leave out the packages that only the tests need
-#   --clang      and the second compiler, which only tests/run --clang needs
+#   --clang      and the second compiler, which only tests/run --clang and --fuzz need
 #   --long       and what only tests/run --long needs: that compiler, cross compilers and emulators
 set -euo pipefail
 
@@ -28,14 +28,14 @@ test_packages=(
 )
 
 long_packages=(
-    clang
+    clang libclang-rt-14-dev
     g++-aarch64-linux-gnu qemu-user
     g++-mingw-w64-x86-64-posix wine64
 )
 
 case "${1:-}" in
     --samples) ;;
-    --clang) packages+=("${test_packages[@]}" clang) ;;
+    --clang) packages+=("${test_packages[@]}" clang libclang-rt-14-dev) ;;
     --long) packages+=("${test_packages[@]}" "${long_packages[@]}") ;;
     "") packages+=("${test_packages[@]}") ;;
     *)
