@@ -51,15 +51,15 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
 uint keyOf(uint slot) { return clusterOf(slot, 0u); }
 bool mayLight(uint slot) { return keyOf(slot) != 0u && clusterOf(slot, 10u) == 0u; }
 
-// Orders clusters by power, equal ones by key.
+// Orders clusters by power, to an eighth of it, and similar ones by key. 19 bits.
 uint rankOf(uint slot) {
-    return (floatBitsToUint(float(clusterOf(slot, 1u))) & ~0xfffu) | (keyOf(slot) >> 20u);
+    return floatBitsToUint(float(clusterOf(slot, 1u))) >> 20u << 8u | keyOf(slot) >> 24u;
 }
 
-// The least rank of the kMost strongest clusters, so that thread order never decides which compete.
-uint leastRank(uint me) {
+// The rank that fewer than kMost clusters exceed: thread order must not decide which compete.
+uint rankOfMost(uint me) {
     uint least = 0u;
-    for (uint bit = 1u << 31u; bit != 0u; bit >>= 1u) {
+    for (uint bit = 1u << 18u; bit != 0u; bit >>= 1u) {
         if (me == 0u) stronger = 0u;
         barrier();
         for (uint slot = me; slot < kClusterSlots; slot += 128u)
@@ -121,7 +121,7 @@ void main() {
     barrier();
     bool tooMany = stronger > kMost;
     barrier();
-    uint least = tooMany ? leastRank(me) : 0u;
+    uint least = tooMany ? rankOfMost(me) + 1u : 0u;
     for (uint slot = me; slot < kClusterSlots; slot += 128u) {
         if (!mayLight(slot) || rankOf(slot) < least) continue;
         uint at = atomicAdd(candidates, 1u);
