@@ -207,9 +207,9 @@ class Check {
     }
 
     void checkConformance(bool usable) {
-        json& result = report_["conformance"];
+        json result;
         const json cpu = runPart("hashes_cpu", {"hashes", "cpu"}, share(0.3));
-        json device;
+        json device = json::object();
         if (usable) device = hashesOfDevice();
         for (const json* backend : {&cpu, static_cast<const json*>(&device)})
             if (backend->contains("fault"))
@@ -244,6 +244,7 @@ class Check {
         // Scenes in which nothing burns, or which nobody recorded, prove nothing.
         const size_t points = cpu.value("points", json::array()).size();
         result["equal"] = equal == recorded_.size() && burnt == equal && points == equal;
+        report_["conformance"] = result;
         say(std::to_string(equal) + " of " + std::to_string(recorded_.size()) +
             " burn hashes are equal on the cpu backend, on the device and as recorded");
     }
