@@ -23,11 +23,11 @@ h1{font-size:27px;margin:0 0 2px}h2{font-size:19px;margin:34px 0 8px}h3{font-siz
 p{margin:6px 0 10px}.dim{color:#6b6f76}small{color:#6b6f76}
 table{border-collapse:collapse;background:#fff;width:100%;margin:6px 0 10px}
 th,td{text-align:left;vertical-align:top;padding:4px 10px;border-bottom:1px solid #e6e2da}
-th{background:#ece8e0;font-weight:600}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
+th{background:#ece8e0;font-weight:600}td.n,th.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
 code{font:13px "DejaVu Sans Mono",Consolas,monospace;overflow-wrap:anywhere}
 .badges{display:grid;grid-template-columns:repeat(4,1fr);gap:12px;margin:18px 0 6px}
 .badge{background:#fff;border-left:6px solid #9aa0a8;padding:10px 14px}
-.badge b{display:block;font-size:18px}.good{border-color:#2f8a4c}.bad{border-color:#c63a25}
+.badge b{display:block;font-size:18px}.badge.good{border-color:#2f8a4c}.badge.bad{border-color:#c63a25}
 .bad b,td.bad{color:#b3301c}.good b,td.good{color:#24703d}
 .films{display:grid;grid-template-columns:repeat(3,1fr);gap:14px}
 figure{margin:0;background:#fff}figure img{display:block;width:100%}
@@ -174,7 +174,11 @@ class Page {
         } else {
             const json& t = report_["tests"];
             const bool good = t["problems"].empty();
-            badge(good ? "good" : "bad", "Tests on the device",
+            const bool all = t["notRun"] == 0;
+            badge(!good ? "bad"
+                  : all ? "good"
+                        : "",
+                  "Tests on the device",
                   good ? t["passed"].dump() + " passed"
                        : std::to_string(t["problems"].size()) + " failed",
                   t["passed"].dump() + " passed, " + t["skipped"].dump() + " skipped, " +

@@ -21,22 +21,28 @@ using test::Picture;
 
 constexpr float kFrameTime = 1.0f / 60, kSetUpTime = 0.125f;  // s
 
-// Milliseconds of each pass of one part of a frame.
+// Milliseconds of each pass of one part of a frame: a step, or a picture, whose frame index is 0.
 class PassSums {
  public:
-    explicit PassSums(const char* part) : part_(part) {}
+    PassSums(const char* part, bool pictures) : part_(part), pictures_(pictures) {}
+    // Times that are not of this part, or were added before, are of a frame that recorded nothing.
     double add(FwWorld* world) {
         std::vector<FwPassTime> times(fwDebug_GetPassTimes(world, nullptr, 0));
         times.resize(std::min<size_t>(
             fwDebug_GetPassTimes(world, times.data(), uint32_t(times.size())), times.size()));
         double sum = 0;
+        uint64_t newest = last_;
         for (const FwPassTime& time : times) {
+            if ((time.frameIndex == 0) != pictures_) continue;
+            if (!pictures_ && time.frameIndex <= last_) continue;
+            newest = std::max(newest, time.frameIndex);
             auto at = std::find_if(passes_.begin(), passes_.end(),
                                    [&](const auto& pass) { return pass.first == time.name; });
             if (at == passes_.end()) at = passes_.insert(at, {time.name, 0});
             at->second += time.milliseconds;
             sum += time.milliseconds;
         }
+        last_ = newest;
         return sum;
     }
     void write(json& out, double frames) const {
@@ -46,6 +52,8 @@ class PassSums {
 
  private:
     const char* part_;
+    bool pictures_;
+    uint64_t last_ = 0;
     std::vector<std::pair<std::string, double>> passes_;  // in the order of a frame
 };
 
@@ -81,7 +89,7 @@ json timeFrames(Scene& scene, const TimingRequest& request, uint32_t width, uint
     shot.pixels = pixels.data();
     constexpr float kDusk[3] = {0.010f, 0.014f, 0.024f};
     std::copy_n(kDusk, 3, shot.background);
-    PassSums step("step"), draws("picture");
+    PassSums step("step", false), draws("picture", true);
     double wall = 0, sum = 0, most = 0;
     for (uint32_t frame = 0; frame < request.warmUp + request.frames; ++frame) {
         const Clock::time_point start = Clock::now();
