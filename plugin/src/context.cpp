@@ -114,7 +114,7 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
             core::Log(callbacks).write(
                 FW_LOG_WARNING,
                 "This build is not exact: saves, replays and network games differ from those of "
-                "other builds. Compile it with -ffp-contract=off and without -ffast-math.");
+                "others. Use -ffp-contract=off, rounding to nearest and no -ffast-math.");
         core::Memory first(callbacks);  // the context's own block precedes its counters
         auto* context = std::pmr::polymorphic_allocator<>(&first).new_object<FwContext>(callbacks);
         try {

@@ -50,7 +50,8 @@ program=("$folder/tests/portable/flamewright_portable")
 case $row in
     inexact)  # a build with fast-math fails, and a process that rounds in another way gets a warning
         if c++ -std=c++20 -fsyntax-only -ffast-math -I "$fw_root/shaders" -include shared/types.h \
-            -x c++ /dev/null 2>"$folder/errors" || ! grep -q "error.*Fast-math changes" "$folder/errors"; then
+            -x c++ /dev/null 2>"$folder/errors" ||
+            ! grep -q "error.*Fast-math changes" "$folder/errors"; then
             cat "$folder/errors"
             echo "portable: shaders/shared/types.h does not refuse -ffast-math"
             exit 1
