@@ -1,5 +1,6 @@
 // Functions that create or take a context.
 #include "components/volumetric_fire.h"
+#include "core/hash.h"
 #include "core/owned.h"
 #include "gpu/cpu/cpu_backend.h"
 #include "objects.h"
@@ -47,7 +48,9 @@ bool burnsExactly() {
     world.queries().requestBurnMap(ball.object);
     world.advance(2, 0);
     const world::BurnMapCopy* map = world.queries().fetchBurnMap(ball.object);
-    return map && world::hashState(map->ticks, map->heat) == 0xfbb51fbf5e5a80c7;
+    const std::span areas(world.scene().objectDomain(ball.object).areas);  // m^2
+    return map && core::hashBytes(std::as_bytes(areas), world::hashState(map->ticks, map->heat)) ==
+                      0x27b5cedbe4665031;
 }
 
 // True: the cooked bytes are in `buffer`. *size: room in it, then what there is; a buffer that is
@@ -109,8 +112,7 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
         if (def.backend == FW_BACKEND_CPU && def.vulkan)
             core::refuse(
                 "FwContextDef::vulkan is given and backend is FW_BACKEND_CPU; choose one.");
-        static const bool isExact = burnsExactly();  // once in a process
-        if (!isExact)
+        if (static const bool isExact = burnsExactly(); !isExact)  // once in a process
             core::Log(callbacks).write(
                 FW_LOG_WARNING,
                 "This build is not exact: saves, replays and network games differ from those of "

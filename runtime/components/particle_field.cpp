@@ -100,8 +100,7 @@ void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) no
     const float* q = field.rotation;
     gpu::vec3 p((u - 0.5f) * field.size[0], v * field.size[1], 0);
     if (field.shape != FW_FIELD_BILLBOARD) {  // as field_draw.vert
-        // Doubles, as in all that decides a burn: C libraries differ in the last bit, which
-        // rounding drops.
+        // Doubles: C libraries differ in the last bit of the cosine of a float.
         const auto lon = double(6.2831853f * u), lat = double(3.1415927f * (v - 0.5f));
         const auto level = float(std::cos(lat));
         p = gpu::vec3(level * float(std::cos(lon)) * field.size[0],

@@ -30,10 +30,9 @@ class Context {
     FwTargetId registerTarget(const FwVulkanTargetDef& def) {                // [any]
         return pipelines.registerTarget(def);
     }
-    void unregisterTarget(FwTargetId id) {
-        pipelines.unregisterTarget(id);
-    }                                                          // [any] the host has waited
-    void notifyDeviceLost() noexcept { device.notifyLost(); }  // [any]
+    // The host has waited. [any]
+    void unregisterTarget(FwTargetId id) { pipelines.unregisterTarget(id); }
+    void notifyDeviceLost() noexcept { device.notifyLost(); }                 // [any]
     [[nodiscard]] bool deviceLost() const noexcept { return device.lost(); }  // [any]
 
     // By component, of all worlds together, and "blocks". [any]
