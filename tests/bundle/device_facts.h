@@ -1,4 +1,4 @@
-// What flamewright-check reports about the machine and its Vulkan devices. Opens the loader by
+// Facts about the machine and its Vulkan devices, for flamewright-check. Opens the loader by
 // name, so that a machine without one still gets a report.
 #pragma once
 #include <nlohmann/json.hpp>
