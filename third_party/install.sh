@@ -21,7 +21,7 @@ packages=(
     assimp-testmodels
 )
 test_packages=(
-    libgtest-dev libgmock-dev libbenchmark-dev libtinygltf-dev libpng-dev
+    libgtest-dev libgmock-dev googletest libbenchmark-dev libtinygltf-dev libpng-dev
     spirv-tools
     xvfb xdotool imagemagick
     debootstrap xz-utils

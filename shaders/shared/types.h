@@ -4,7 +4,7 @@
 #define FW_SHARED_TYPES_H
 #ifdef __cplusplus
 #if defined(__FAST_MATH__) || defined(_M_FP_FAST) || (__FINITE_MATH_ONLY__ + 0)
-#error "Fast-math changes what burns: saves and network games would differ from those of other builds. Remove -ffast-math, -Ofast, -ffinite-math-only or /fp:fast from the flags."
+#error "Fast-math changes what burns. Remove -ffast-math, -Ofast, -ffinite-math-only or /fp:fast."
 #endif
 #include <bit>
 #include <cmath>
