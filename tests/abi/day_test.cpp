@@ -1,20 +1,15 @@
 // A day of game time in one world: the fire of the last hour burns as that of the first, costs as
 // much, and memory does not grow. Minutes long, so only tests/run --long runs it.
 #include "abi/abi_support.h"
+#include "support/cpu_time.h"
 
 #include <algorithm>
-#include <ctime>
 #include <numeric>
 
 namespace {
 
 using namespace host;
-
-double cpuSeconds() {
-    std::timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
-}
+using fw::test::cpuSeconds;
 
 struct Hour {
     float burning = 0;  // m^2, two minutes after the match

@@ -3,11 +3,11 @@
 #include <vulkan/vulkan.h>
 
 #include "flamewright/flamewright_vulkan.h"
+#include "support/cpu_time.h"
 #include "support/device_rank.h"
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <vector>
 
 namespace fw::test {
@@ -16,14 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 inline double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// CPU time of the whole process in s. On a software device it includes the device's work and is
-// independent of the machine's load.
-inline double cpuSeconds() {
-    std::timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
 }
 
 inline double median(std::vector<double> values) {

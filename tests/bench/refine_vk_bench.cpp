@@ -9,6 +9,7 @@
 // mean difference of the two pictures in 1/1000 of 1/255; alone: pixels of 10,000 that only one of
 // them shows. A row whose pictures differ by more than the limit is an error.
 #include "flamewright_reference.h"
+#include "support/cpu_time.h"
 #include "support/refine_scene.h"
 
 #include <benchmark/benchmark.h>
@@ -20,7 +21,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -118,12 +118,6 @@ struct Camera {  // orthographic, so that distance limits no level
         return fwWorld_RenderOffscreen(world.world, &shot) == FW_OK;
     }
 };
-
-double cpuSeconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 constexpr int kFrames = 120;
 constexpr uint32_t kSmall = 64, kLarge = 512;  // pixels

@@ -3,11 +3,11 @@
 // little more than its draws. Popping is measured against the same frames at full detail: their
 // difference may change little from frame to frame. FLAMEWRIGHT_MOTION=<folder> keeps the frames.
 #include "support/houses.h"
+#include "support/cpu_time.h"
 #include "support/own_world.h"
 #include "support/sanitized.h"
 
 #include <cstdlib>
-#include <ctime>
 
 namespace fw::test::houses_test {
 namespace {
@@ -32,13 +32,6 @@ class Houses : public OwnDevice {
         return pictureOf(village.world, view, kWidth, kHeight);
     }
 };
-
-// s, of this process, which includes a software device's work.
-double cpuSeconds() {
-    std::timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
-}
 
 // Two pictures of one view, before and after a frame's time.
 void addChange(const Picture& before, const Picture& after, Popping& p, uint32_t frames = kFrames) {
