@@ -2,6 +2,7 @@
 // everything is freed, and the fire continues bit by bit from the last mirror.
 // FLAMEWRIGHT_LOSE_EVERY=1 in the environment tests every call.
 #include "support/loss_scene.h"
+#include "support/paths.h"
 #include "support/sanitized.h"
 #include "support/views.h"
 
@@ -20,7 +21,7 @@ const struct Loader {
     LosingVulkan* vulkan = nullptr;
     void (*drop)() = nullptr;
     Loader() {
-        void* library = dlopen(FW_TEST_LOSING_LOADER, RTLD_NOW | RTLD_LOCAL);
+        void* library = dlopen(kLosingLoader, RTLD_NOW | RTLD_LOCAL);
         auto* give = library ? reinterpret_cast<LosingVulkan* (*)()>(dlsym(library, "losingVulkan"))
                              : nullptr;
         if (give) vulkan = give();
@@ -72,7 +73,7 @@ struct Life {
 constexpr int64_t kApart = fw::test::rounds(40, 80);
 
 TEST(DeviceLoss, IsSurvivedAtEveryCallOfAnOwnDevice) {
-    if (!*FW_TEST_LOSING_LOADER) GTEST_SKIP() << "there is no libvulkan.so.1";
+    if (!*kLosingLoader) GTEST_SKIP() << "there is no libvulkan.so.1";
     ASSERT_TRUE(loader.vulkan && loader.vulkan->real) << "no loader between";
     LosingVulkan& vulkan = *loader.vulkan;
     LossReference reference;

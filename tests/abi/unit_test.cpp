@@ -3,6 +3,7 @@
 // that is in neither list below, or a length that the session omits, fails.
 #include "abi/busy_world.h"
 #include "flamewright/flamewright.hpp"
+#include "support/paths.h"
 
 #include <gmock/gmock.h>
 
@@ -215,8 +216,7 @@ Names difference(const Names& a, const Names& b) {
 TEST(WorldUnit, EveryNumberOfTheHeadersIsClassified) {
     Names declared;
     for (const char* header : {"flamewright.h", "flamewright_vulkan.h", "flamewright_debug.h"})
-        readNumbers(std::string(FW_TEST_SOURCE_DIR "/../plugin/include/flamewright/") + header,
-                    declared);
+        readNumbers(std::string(fw::test::kIncludeFolder) + "/flamewright/" + header, declared);
     EXPECT_GT(declared.size(), 280u);
     const Names lengths = namesOf(std::begin(kLengths), std::end(kLengths));
     Names known = namesOf(std::begin(kOthers), std::end(kOthers));

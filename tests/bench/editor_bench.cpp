@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "script/script.h"
+#include "support/paths.h"
 
 namespace {
 
@@ -99,11 +100,11 @@ void openBunny(benchmark::State& state) {
 }
 BENCHMARK(openBunny)->Name("editor/open_bunny31k")->Unit(benchmark::kMillisecond)->Iterations(2);
 
-#ifdef FW_BENCH_EDITOR
 // From the second start on, with warm caches. Includes the end of the program.
 void startEditor(benchmark::State& state) {
-    const std::string command =
-        "\"" FW_BENCH_EDITOR "\" --headless --once --page welcome >/dev/null 2>&1";
+    std::string command = "\"";
+    command.append(fw::test::kEditor);
+    command.append("\" --headless --once --page welcome >/dev/null 2>&1");
     if (std::system(command.c_str()) != 0) {
         state.SkipWithError("the editor does not start here");
         return;
@@ -115,6 +116,5 @@ BENCHMARK(startEditor)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(3)
     ->UseRealTime();
-#endif
 
 }  // namespace

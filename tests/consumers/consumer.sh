@@ -35,10 +35,12 @@ case $name in
     subdirectory)
         launcher=()
         command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-        # Compiles each source separately, so that a missing include fails here; Debug without debug
-        # information, because the whole library is compiled.
-        build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." -DCMAKE_BUILD_TYPE=Debug \
-            -DCMAKE_CXX_FLAGS_DEBUG=-O0 "${launcher[@]}"
+        CCACHE_BASEDIR=$(cd "$here/../.." && pwd)  # clones share what it holds
+        export CCACHE_BASEDIR
+        # Compiles each source separately and without precompiled headers, so that a missing include
+        # fails here; Debug without debug information, because the whole library is compiled.
+        build_project "-DFLAMEWRIGHT_SOURCE=$CCACHE_BASEDIR" -DCMAKE_BUILD_TYPE=Debug \
+            -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "${launcher[@]}"
         "$work/build/consumer"
         ;;
     pkg_config)

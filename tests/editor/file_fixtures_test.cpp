@@ -4,13 +4,14 @@
 #include <gmock/gmock.h>
 
 #include "editor/text_of.h"
+#include "support/paths.h"
 
 namespace {
 
 using namespace fwedit;
 
 Scene sceneOf(const char* name) {
-    const std::string path = std::string(FW_TEST_SOURCE_DIR) + "/fixtures/" + name;
+    const std::string path = std::string(fw::test::kTestFolder) + "/fixtures/" + name;
     Scene scene;
     std::vector<std::string> repairs;
     std::string error;

@@ -14,6 +14,7 @@
 #include "flamewright/flamewright_debug.h"
 #include "import/float_picture.h"
 #include "model/neutral_stage.h"
+#include "support/paths.h"
 
 namespace {
 
@@ -253,10 +254,10 @@ TEST(NeutralStage, TheEditorShowsEachMaterialsColour) {
     }
 }
 
-#ifdef FW_TEST_BURNING_MESH
 TEST(NeutralStage, SampleAndEditorShowEveryFileEqually) {
     Yard yard;
     if (!hasDevice(yard)) GTEST_SKIP() << "no Vulkan device";
+    if (!*fw::test::kBurningMesh) GTEST_SKIP() << "this build has no samples";
     struct Case {
         const char* name;
         std::vector<BoardMaterial> row;
@@ -300,7 +301,7 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileEqually) {
         yard.run("new\nimport " + name + ".gltf materials pine\nshot " + name +
                  "_editor.png 320x180 neutral 20 10\n");
         const fs::path out = yard.folder / (name + "_sample");
-        const std::string command = std::string(FW_TEST_BURNING_MESH) +
+        const std::string command = std::string(fw::test::kBurningMesh) +
                                     " --headless --neutral --no-cache --size 320x180 --yaw 20 "
                                     "--pitch 10 --out " +
                                     out.string() + " " + (yard.folder / (name + ".gltf")).string() +
@@ -318,6 +319,5 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileEqually) {
         << "its joints bend the board";
     std::printf("worst: %.2f\n", worst);
 }
-#endif
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "editor/yard.h"
 #include "flamewright/flamewright_debug.h"
 #include "import/float_picture.h"
+#include "support/paths.h"
 #include "support/sanitized.h"
 
 namespace {
@@ -145,7 +146,7 @@ TEST(EditorOutput, CAndCppSnippetsBurnLikeTheEditor) {
     ASSERT_EQ(FW_OK, fwWorld_GetObjectState(burn.world, objects[0], &state));
     ASSERT_GT(state.ignited, 100u);  // enough happened to show a difference
 
-    const std::string library = FW_TEST_LIBRARY, include = FW_TEST_INCLUDE;
+    const std::string library = fw::test::kLibrary, include = fw::test::kIncludeFolder;
     const std::string folder = (yard.folder / "game").string();
     const std::string tail = " -I" + include + " " + library + " -lm -Wl,-rpath," +
                              fs::path(library).parent_path().string();
@@ -200,7 +201,8 @@ TEST(EditorOutput, SnippetsOfSmallScenesCompile) {
         c += " " + (yard.folder / (name + ".c")).string();
         cpp += " " + (yard.folder / (name + ".cpp")).string();
     }
-    const std::string strict = " -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I" FW_TEST_INCLUDE;
+    const std::string strict = std::string(" -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I") +
+                               fw::test::kIncludeFolder;
     runCommand("cc -std=c11" + strict + c);
     runCommand("c++ -std=c++20" + strict + cpp);
 }

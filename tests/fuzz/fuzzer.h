@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.h"
+
 namespace fuzz {
 
 using Bytes = std::vector<unsigned char>;
@@ -36,7 +38,7 @@ inline Bytes bytesOf(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 inline Bytes fixture(const char* name) {
-    return bytesOf(std::filesystem::path(FW_TEST_SOURCE_DIR) / "fixtures" / name);
+    return bytesOf(std::filesystem::path(fw::test::kTestFolder) / "fixtures" / name);
 }
 inline Bytes bytesIn(std::string_view text) { return {text.begin(), text.end()}; }
 inline std::string_view textOf(Input input) {
@@ -49,7 +51,7 @@ inline bool startsWith(Input input, std::string_view magic) {
 // Regressions of a fuzzer: inputs that once failed.
 inline std::vector<std::filesystem::path> regressionsOf(const Fuzzer& fuzzer) {
     std::vector<std::filesystem::path> files;
-    const auto folder = std::filesystem::path(FW_TEST_SOURCE_DIR) / "fuzz" / "regressions";
+    const auto folder = std::filesystem::path(fw::test::kTestFolder) / "fuzz" / "regressions";
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (entry.path().stem() == fuzzer.name) files.push_back(entry.path());
     return files;

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <string>
 
+#include "support/paths.h"
+
 namespace fw::test {
 
 // `name`: as below tests/.
 inline std::string testFile(const std::string& name) {
     const char* folder = std::getenv("FLAMEWRIGHT_TEST_DATA");
-    return std::string(folder ? folder : FW_TEST_SOURCE_DIR) + "/" + name;
+    return std::string(folder ? folder : kTestFolder) + "/" + name;
 }
 
 // Default: that of the test program, in the build folder.

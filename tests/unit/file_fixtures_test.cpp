@@ -2,6 +2,7 @@
 #include "core/hash.h"
 #include "flipbook/flipbook.h"
 #include "mesh/bake.h"
+#include "support/paths.h"
 #include "volume/profile.h"
 #include "world/played.h"
 
@@ -16,7 +17,7 @@ namespace {
 using namespace fw;
 
 std::vector<std::byte> contentOf(const char* name) {
-    const auto path = std::filesystem::path(FW_TEST_SOURCE_DIR) / "fixtures" / name;
+    const auto path = std::filesystem::path(fw::test::kTestFolder) / "fixtures" / name;
     std::ifstream file(path, std::ios::binary);
     std::vector<std::byte> bytes(std::filesystem::file_size(path));
     file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));

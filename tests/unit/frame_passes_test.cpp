@@ -1,6 +1,7 @@
 // The table of passes, the function that records a frame and its documentation say the same.
 #include "embedded_shaders.h"
 #include "gpu/passes/shader_interface.h"
+#include "support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace fw::test {
 namespace {
 
 std::string textOf(const char* path) {
-    std::ifstream file(std::string(FW_TEST_SOURCE_DIR "/../runtime/") + path);
+    std::ifstream file(std::string(kTestFolder) + "/../runtime/" + path);
     EXPECT_TRUE(file.good()) << path;
     std::stringstream text;
     text << file.rdbuf();

@@ -4,6 +4,7 @@
 
 #include "fire/wind_filter.h"
 #include "flamewright/flamewright_vulkan.h"
+#include "support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +39,7 @@ std::string page() {
 }
 
 TEST(Limits, DocumentationStatesTheLimitsOfTheLibrary) {
-    const std::string path = std::string(FW_TEST_SOURCE_DIR) + "/../plugin/docs/limits.md";
+    const std::string path = std::string(fw::test::kTestFolder) + "/../plugin/docs/limits.md";
     if (std::getenv("FLAMEWRIGHT_BLESS")) {
         std::ofstream(path) << page();
         GTEST_SKIP() << "wrote " << path;

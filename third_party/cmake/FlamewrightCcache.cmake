@@ -5,9 +5,10 @@ if(PROJECT_IS_TOP_LEVEL)
         foreach(language C CXX)
             if(NOT CMAKE_${language}_COMPILER_LAUNCHER)
                 # ccache takes files that use a precompiled header only when both are set: its own
-                # sloppiness and GCC's option.
+                # sloppiness and GCC's option. With a base folder, clones share what it holds.
                 set(CMAKE_${language}_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-                    CCACHE_SLOPPINESS=pch_defines,time_macros ${FW_CCACHE})
+                    CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}
+                    ${FW_CCACHE})
                 add_compile_options($<$<COMPILE_LANG_AND_ID:${language},GNU>:-fpch-preprocess>)
             endif()
         endforeach()
