@@ -16,7 +16,7 @@ packages=(
     nlohmann-json3-dev
     libimgui-dev libstb-dev libfreetype-dev
     fonts-inter fonts-material-design-icons-iconfont fonts-dejavu-core
-    libopenimageio-dev libimath-dev zlib1g-dev
+    libopenimageio-dev libimath-dev zlib1g-dev libwebp-dev
     libdraco-dev libmeshoptimizer-dev
     assimp-testmodels
 )

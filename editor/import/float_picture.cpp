@@ -9,8 +9,8 @@
 #include <memory>
 #include <system_error>
 
-#include "import/exr_header.h"
 #include "import/image_decode.h"
+#include "import/picture_header.h"
 
 namespace fwimport {
 namespace {
@@ -28,13 +28,15 @@ std::string reasonOf(const std::string& text) {
 }
 
 // The whole file if it is EXR, otherwise its first bytes.
-std::vector<uint8_t> headOf(const std::filesystem::path& path) {
+std::vector<uint8_t> headOf(const std::filesystem::path& path, uint64_t size) {
+    constexpr uint64_t kHead = 64;
     std::ifstream file(path, std::ios::binary);
-    std::vector<uint8_t> bytes(4);
-    file.read(reinterpret_cast<char*>(bytes.data()), 4);
-    if (!file || bytes[0] != 0x76 || bytes[1] != 0x2f) return {};
-    bytes.resize(std::filesystem::file_size(path));
-    file.read(reinterpret_cast<char*>(bytes.data() + 4), std::streamsize(bytes.size()) - 4);
+    std::vector<uint8_t> bytes(std::min(size, kHead));
+    file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+    if (bytes.size() < 2 || bytes[0] != 0x76 || bytes[1] != 0x2f) return bytes;
+    bytes.resize(size);
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
     return bytes;
 }
 
@@ -53,8 +55,11 @@ int FloatPicture::channel(const std::string& name) const {
 
 bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::string& error) {
     try {
+        std::error_code absent;  // which the reader reports
+        const uint64_t size = std::filesystem::file_size(path, absent);
+        const PictureLimit limit{kMaxPictureSide, mostUnpacked(absent ? 0 : size)};
         std::string unfit;
-        if (!checkExrHeader(headOf(path), kMaxPictureSide, unfit))
+        if (!absent && !checkHeader(headOf(path, size), limit, unfit))
             return refused(path, unfit, error);
         OIIO::ImageSpec request;
         request["oiio:UnassociatedAlpha"] = 1;
@@ -62,13 +67,6 @@ bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::
         if (!input) return refused(path, reasonOf(OIIO::geterror()), error);
         input->threads(1);
         const OIIO::ImageSpec spec = input->spec();
-        const auto most = int(kMaxPictureSide);
-        if (spec.width < 1 || spec.height < 1 || spec.width > most || spec.height > most)
-            return refused(path,
-                           "it is " + std::to_string(spec.width) + " x " +
-                               std::to_string(spec.height) + " pixels; each side must lie in [1, " +
-                               std::to_string(most) + "]",
-                           error);
         if (spec.depth > 1)
             return refused(path,
                            "it is " + std::to_string(spec.depth) + " slices deep; it must be flat",
@@ -80,15 +78,9 @@ bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::
                                std::to_string(kMaxPictureChannels) + "]",
                            error);
         if (spec.deep) return refused(path, "its pixels are deep; they must be flat", error);
-        const uint64_t unpacked =
-            sizeof(float) * uint64_t(spec.width) * uint64_t(spec.height) * uint64_t(spec.nchannels);
-        const uint64_t limit = mostUnpacked(std::filesystem::file_size(path));
-        if (unpacked > limit)
-            return refused(path,
-                           "its pixels take " + std::to_string(unpacked) +
-                               " bytes; the limit for a file of its size is " +
-                               std::to_string(limit) + ". Make it smaller",
-                           error);
+        const uint64_t bytesPerPixel = sizeof(float) * uint64_t(spec.nchannels);
+        if (!fits(spec.width, spec.height, bytesPerPixel, limit, unfit))
+            return refused(path, unfit, error);
         FloatPicture read;
         read.width = uint32_t(spec.width);
         read.height = uint32_t(spec.height);

@@ -134,7 +134,7 @@ void Notes::finish() {
 }
 
 GltfFile::GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder, Notes& notes)
-    : folder_(std::move(folder)), notes_(notes) {
+    : folder_(std::move(folder)), notes_(notes), packedBytes_(bytes.size()) {
     if (bytes.empty()) refuse("it is empty");
     std::span<const uint8_t> words = bytes;
     if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
@@ -203,7 +203,17 @@ std::vector<uint8_t> GltfFile::uri(const std::string& uri, const std::string& fi
     UriBytes read = readUri(uri, folder_, field);
     if (read.outside)
         notes_.add(text(field, " \"", uri.substr(0, 80), "\" lies outside the file's folder"));
+    if (!uri.starts_with("data:") && otherFiles_.insert(uri).second)
+        packedBytes_ += read.bytes.size();
     return std::move(read.bytes);
+}
+
+void GltfFile::reserve(uint64_t bytes, const std::string& who) {
+    if (bytes > memoryLeft())
+        refuse(who, " brings the memory of the model to ", reserved_ + bytes,
+               " bytes; the limit for ", packedBytes_, " bytes of file is ",
+               mostUnpacked(packedBytes_), ". Import a part of it, or make it smaller");
+    reserved_ += bytes;
 }
 
 std::span<const uint8_t> GltfFile::buffer(int index) {
@@ -261,6 +271,8 @@ Bytes GltfFile::view(int64_t index, const std::string& who) {
                 wanted.mode = packed.string("mode");
                 wanted.filter = packed.string("filter", "NONE");
                 const Bytes from = range(packed, packed.path().c_str());
+                if (wanted.stride <= 256 && wanted.count <= 4 * kMaxVertices)
+                    reserve(wanted.count * wanted.stride, packed.path());
                 found =
                     unpacked_.emplace(index, readMeshopt(from.span(), wanted, packed.path())).first;
             }
@@ -299,10 +311,16 @@ Values GltfFile::accessor(int64_t index, const std::string& who) {
     if (values.count > 4 * kMaxVertices) {
         refuse(name, ".count is ", values.count, "; the limit is ", 4 * kMaxVertices);
     }
-    // A file may reference the same numbers many times.
-    constexpr uint64_t kMostRead = 1ull << 31;
-    if ((valuesRead_ += values.count * values.components) > kMostRead)
-        refuse(name, " raises the total to ", valuesRead_, " numbers; the limit is ", kMostRead);
+    // A file may reference the same numbers many times, which takes time.
+    const uint64_t mostRead = std::max(uint64_t{1} << 28, 100 * packedBytes_);
+    if ((valuesRead_ += values.count * values.components) > mostRead)
+        refuse(name, " raises the total to ", valuesRead_, " numbers; the limit for ", packedBytes_,
+               " bytes of file is ", mostRead);
+    // Up to four accessors of a primitive are in memory at a time.
+    if (values.count * values.components * sizeof(double) > memoryLeft() / 4)
+        refuse(name, " has ", values.count, " x ", values.components,
+               " numbers; the memory left for ", packedBytes_, " bytes of file is for ",
+               memoryLeft() / 4 / sizeof(double), ". Import a part of it, or make it smaller");
     const uint64_t element = size * values.components;
     const bool normalized = accessor.flag("normalized", false);
     const Field sparse = accessor.object("sparse");

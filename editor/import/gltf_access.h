@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "import/gltf_json.h"
+#include "import/image_decode.h"
 #include "import/mesh_codecs.h"
 
 namespace fwimport {
@@ -65,6 +67,12 @@ class GltfFile {
     // Adds a note if it lies outside the folder.
     std::vector<uint8_t> uri(const std::string& uri, const std::string& field);
 
+    // Counts memory that lives as long as the model, before it is allocated. Refuses what a file of
+    // this size may not unpack to (mostUnpacked). `who`: what it is for, in the error.
+    void reserve(uint64_t bytes, const std::string& who);
+    // Bytes that can still be reserved.
+    [[nodiscard]] uint64_t memoryLeft() const { return mostUnpacked(packedBytes_) - reserved_; }
+
  private:
     std::span<const uint8_t> buffer(int index);
     void readContainer(std::span<const uint8_t> bytes);
@@ -75,7 +83,9 @@ class GltfFile {
     nlohmann::json json_;
     std::span<const uint8_t> binary_;  // of a GLB
     bool hasBinary_ = false;
-    uint64_t valuesRead_ = 0;
+    uint64_t packedBytes_ = 0;  // of the file and of the others that it names
+    std::set<std::string> otherFiles_;
+    uint64_t reserved_ = 0, valuesRead_ = 0;
     std::map<int64_t, std::vector<uint8_t>> buffers_, unpacked_;  // by URI; of compressed views
 };
 

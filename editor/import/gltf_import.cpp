@@ -20,6 +20,11 @@
 namespace fwimport {
 namespace {
 
+// Memory of the model and of its making, with room that vectors keep in reserve.
+constexpr uint64_t kVertexBytes = 96, kCornerBytes = 12;
+constexpr uint64_t kShapeBytes = 64;       // of a vertex in a shape that is kept
+constexpr uint64_t kInfluenceBytes = 112;  // of a vertex, for four joints and their weights
+
 // A primitive in its local space, as triangles.
 struct Shape {
     std::string name;  // "meshes[0].primitives[1]"
@@ -233,6 +238,8 @@ class Importer {
                 shape = &found->second;
             } else if (keep && !ownWeights) {
                 shape = &(shapes_[key] = readShape(primitives.at(i), weights));
+                file_.reserve(shape->vertices * kShapeBytes + shape->corners.size() * 4,
+                              shape->name);
             } else {
                 own = readShape(primitives.at(i), weights);
                 shape = &own;
@@ -276,6 +283,7 @@ class Importer {
             refuse(attributes.path(), " makes ", count, " instances; the limit is ",
                    kMaxVertices / 3);
         std::vector<glm::dmat4> result;
+        file_.reserve(count * sizeof result[0], attributes.path());
         result.reserve(count);
         for (uint64_t i = 0; i < count; ++i) {
             glm::dmat4 local(1.0);
@@ -307,6 +315,7 @@ class Importer {
                        " elements; there are ", joints.size(), " joints");
         }
         std::vector<glm::dmat4> result;
+        file_.reserve(joints.size() * sizeof result[0], skin.path());
         for (size_t i = 0; i < joints.size(); ++i) {
             const int64_t node = joints.at(i).asInteger();
             if (node < 0 || static_cast<size_t>(node) >= model_.nodes.size())
@@ -528,6 +537,7 @@ class Importer {
         for (int set = 0; from.names.has(text("JOINTS_", set).c_str()) &&
                           from.names.has(text("WEIGHTS_", set).c_str());
              ++set) {
+            file_.reserve(shape.vertices * kInfluenceBytes, text(shape.name, ".JOINTS_", set));
             joints.push_back(readAttribute(from, text("JOINTS_", set), 4, 4, shape.vertices, {}));
             weights.push_back(readAttribute(from, text("WEIGHTS_", set), 4, 4, shape.vertices, {}));
         }
@@ -661,6 +671,8 @@ class Importer {
                    model_.triangleCount() + shape.corners.size() / 3, " triangles; the limit is ",
                    kMaxTriangles);
         }
+        file_.reserve(shape.vertices * kVertexBytes + shape.corners.size() * kCornerBytes,
+                      shape.name);
         glm::dmat4 world = place;
         glm::dmat3 normalMatrix = normalMatrixOf(glm::dmat3(place));
         std::vector<bool> mirrored(1, glm::determinant(glm::dmat3(place)) < 0);

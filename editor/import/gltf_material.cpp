@@ -28,7 +28,8 @@ double metalShare(const glm::dvec3& diffuse, const glm::dvec3& specular) {
 // Returns true if the image has both transparent and opaque parts.
 bool hasHoles(const DecodedImage& image) {
     bool hole = false, solid = false;
-    for (size_t i = 3; i < image.rgba.size(); i += 4) (image.rgba[i] < 128 ? hole : solid) = true;
+    for (size_t i = 3; i < image.rgba.size() && !(hole && solid); i += 4)
+        (image.rgba[i] < 128 ? hole : solid) = true;
     return hole && solid;
 }
 
@@ -130,13 +131,14 @@ void Materials::readSpecularGlossiness(const Field& from, ImportedMaterial& mate
         notes_.add(text("images[", image, "] is left out: ", error));
         return;
     }
-    DecodedImage mixed = model_.images[static_cast<size_t>(material.image)];
-    addMetal(mixed, material.baseColor, reflected, metal);
-    if (mixed.rgba == model_.images[static_cast<size_t>(material.image)].rgba) return;
-    if (!reserveBytes(mixed.rgba.size(), error)) {
+    const DecodedImage& plain = model_.images[static_cast<size_t>(material.image)];
+    if (!reserveBytes(plain.rgba.size(), from.path(), error)) {
         notes_.leaveOut("colour of metals in specularGlossinessTexture", from.path());
         return;
     }
+    DecodedImage mixed = plain;
+    addMetal(mixed, material.baseColor, reflected, metal);
+    if (mixed.rgba == plain.rgba) return;
     material.image = static_cast<int32_t>(model_.images.size());
     model_.images.push_back(std::move(mixed));
 }
@@ -150,8 +152,12 @@ void Materials::readAlpha(const Field& from, ImportedMaterial& material) {
         material.alphaCutoff =
             static_cast<float>(std::clamp(from.number("alphaCutoff", 0.5), 0.0, 2.0));
     } else if (mode == "BLEND") {
-        const bool holes =
-            material.image >= 0 && hasHoles(model_.images[static_cast<size_t>(material.image)]);
+        bool holes = false;
+        if (material.image >= 0) {
+            const auto [found, fresh] = holes_.try_emplace(material.image);
+            if (fresh) found->second = hasHoles(model_.images[static_cast<size_t>(found->first)]);
+            holes = found->second;
+        }
         if (holes) material.alphaMode = AlphaMode::Mask;
         // Uses the holes of the image, independent of the overall alpha.
         material.alphaCutoff = 0.5f * std::max(material.baseColor[3], 1e-3f);
@@ -265,7 +271,7 @@ int32_t Materials::imageIndex(int image, std::string& error) {
     }
     int32_t result = -1;
     DecodedImage decoded;
-    if (decode(image, decoded, error) && reserveBytes(decoded.rgba.size(), error)) {
+    if (decode(image, decoded, error)) {
         result = static_cast<int32_t>(model_.images.size());
         model_.images.push_back(std::move(decoded));
     }
@@ -273,15 +279,14 @@ int32_t Materials::imageIndex(int image, std::string& error) {
     return images_[image] = result;
 }
 
-bool Materials::reserveBytes(uint64_t bytes, std::string& error) {
-    constexpr uint64_t kMostBytes = 4ull << 30;
-    if (pictureBytes_ + bytes > kMostBytes) {
-        error = text("with it the pictures have ", pictureBytes_ + bytes, " bytes; the limit is ",
-                     kMostBytes);
+bool Materials::reserveBytes(uint64_t bytes, const std::string& who, std::string& error) {
+    try {
+        file_.reserve(bytes, who);
+        return true;
+    } catch (const Refusal& refusal) {
+        error = refusal.what();
         return false;
     }
-    pictureBytes_ += bytes;
-    return true;
 }
 
 bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
@@ -289,14 +294,16 @@ bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
     try {
         if (image.has("bufferView")) {
             const Bytes view = file_.view(image.integer("bufferView", -1), image.path());
-            return decodeImage(view.span(), decoded, error);
+            return decodeImage(view.span(), decoded, error, file_.memoryLeft()) &&
+                   reserveBytes(decoded.rgba.size(), image.path(), error);
         }
         if (!image.has("uri")) {
             error = "it has neither a uri nor a bufferView";
             return false;
         }
         const std::vector<uint8_t> bytes = file_.uri(image.string("uri"), image.path() + ".uri");
-        return decodeImage(bytes, decoded, error);
+        return decodeImage(bytes, decoded, error, file_.memoryLeft()) &&
+               reserveBytes(decoded.rgba.size(), image.path(), error);
     } catch (const Refusal& refusal) {
         error = refusal.what();
         return false;
@@ -362,7 +369,7 @@ void Materials::unwrapPictures() {
         const uint64_t bytes = 4 * static_cast<uint64_t>(axes[0].length * axes[1].length);
         std::string error;
         if (axes[0].length > int64_t{kMaxImageSide} || axes[1].length > int64_t{kMaxImageSide} ||
-            bytes > most || !reserveBytes(bytes, error)) {
+            bytes > most || !reserveBytes(bytes, uses_[m].sampler, error)) {
             notes_.leaveOut(text("wrapS and wrapT of ", uses_[m].sampler), material.name,
                             "are shown as REPEAT: the UVs reach too far beyond the picture");
             continue;

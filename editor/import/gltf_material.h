@@ -55,8 +55,8 @@ class Materials {
     int32_t textureImage(const Field& info, TextureUse& use);
     int32_t imageIndex(int image, std::string& error);
     bool decode(int image, DecodedImage& decoded, std::string& error);
-    // Returns false with `error` if all images together would be too large.
-    bool reserveBytes(uint64_t bytes, std::string& error);
+    // GltfFile::reserve, but returns false with `error`.
+    bool reserveBytes(uint64_t bytes, const std::string& who, std::string& error);
 
     GltfFile& file_;
     ImportedModel& model_;
@@ -64,9 +64,9 @@ class Materials {
     std::map<int, uint32_t> materials_;
     std::map<int, int32_t> images_;
     std::map<int, std::string> imageErrors_;
-    std::set<int> reflections_;  // images used only for metal colours
+    std::map<int32_t, bool> holes_;  // of images of the model
+    std::set<int> reflections_;      // images used only for metal colours
     std::vector<TextureUse> uses_;
-    uint64_t pictureBytes_ = 0;
 };
 
 }  // namespace fwimport

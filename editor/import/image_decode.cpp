@@ -8,7 +8,7 @@
 #include <exception>
 #include <string_view>
 
-#include "import/exr_header.h"
+#include "import/picture_header.h"
 
 namespace fwimport {
 namespace {
@@ -66,7 +66,8 @@ double toSrgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error) {
+bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error,
+                 uint64_t mostMemory) {
     const char* name = nameFor(bytes);
     if (!name) {
         using namespace std::string_view_literals;
@@ -77,7 +78,8 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
                                 : "it is none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP";
         return false;
     }
-    if (!checkExrHeader(bytes, kMaxImageSide, error)) return false;
+    const PictureLimit limit{kMaxImageSide, std::min(mostUnpacked(bytes.size()), mostMemory)};
+    if (!checkHeader(bytes, limit, error)) return false;
     try {
         OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());
         // Disables premultiplication, which is the default. The DDS reader never multiplies, and
@@ -94,29 +96,17 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
             return false;
         }
         const OIIO::ImageSpec spec = input->spec();
-        const auto limit = static_cast<int>(kMaxImageSide);
-        if (spec.width < 1 || spec.height < 1 || spec.width > limit || spec.height > limit) {
-            error = "it is " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                    " pixels; the limit is " + std::to_string(limit) + " a side";
-            return false;
-        }
         const int channels = spec.nchannels;
         if (channels < 1 || channels > 4) {
             error = "it has " + std::to_string(channels) + " channels; 1 to 4 are read";
             return false;
         }
-        const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
         const auto stride = static_cast<size_t>(channels);
         const bool light = spec.format.basetype == OIIO::TypeDesc::FLOAT ||
                            spec.format.basetype == OIIO::TypeDesc::HALF;
-        const uint64_t unpacked = pixels * (4 + (light ? sizeof(float) * stride : 0));
-        if (unpacked > mostUnpacked(bytes.size())) {
-            error = "its " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                    " pixels take " + std::to_string(unpacked) + " bytes; the limit for " +
-                    std::to_string(bytes.size()) + " bytes of file is " +
-                    std::to_string(mostUnpacked(bytes.size())) + ". Make it smaller";
-            return false;
-        }
+        const uint64_t bytesPerPixel = kPixelBytes + (light ? sizeof(float) * stride : 0);
+        if (!fits(spec.width, spec.height, bytesPerPixel, limit, error)) return false;
+        const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
         DecodedImage result;
         result.width = static_cast<uint32_t>(spec.width);
         result.height = static_cast<uint32_t>(spec.height);

@@ -27,7 +27,9 @@ constexpr uint64_t mostUnpacked(uint64_t packed) {
 double toLinear(double stored);
 double toSrgb(double linear);
 
-// On failure returns false with `error`; `image` is then unchanged.
-bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error);
+// On failure returns false with `error`; `image` is then unchanged. `mostMemory`: a second limit of
+// what decoding may take, in bytes.
+bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error,
+                 uint64_t mostMemory = UINT64_MAX);
 
 }  // namespace fwimport

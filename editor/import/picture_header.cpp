@@ -1,4 +1,6 @@
-#include "import/exr_header.h"
+#include "import/picture_header.h"
+
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <cstring>
@@ -67,11 +69,7 @@ int32_t sizeFor(std::string_view type, std::span<const uint8_t> value) {
     return static_cast<int32_t>(value.size());
 }
 
-}  // namespace
-
-bool checkExrHeader(std::span<const uint8_t> bytes, uint32_t most, std::string& error) {
-    static constexpr uint8_t kMagic[] = {0x76, 0x2f, 0x31, 0x01};
-    if (bytes.size() < 8 || std::memcmp(bytes.data(), kMagic, 4) != 0) return true;
+bool checkExr(std::span<const uint8_t> bytes, const PictureLimit& limit, std::string& error) {
     constexpr uint8_t kMultipart = 0x10;
     const bool multipart = (bytes[5] & kMultipart) != 0;
     HeaderReader reader{bytes.subspan(8)};
@@ -94,12 +92,7 @@ bool checkExrHeader(std::span<const uint8_t> bytes, uint32_t most, std::string& 
             if (name != "dataWindow") continue;
             const int64_t left = value.number(), top = value.number();
             const int64_t width = value.number() - left + 1, height = value.number() - top + 1;
-            if (width < 1 || height < 1 || width > most || height > most) {
-                error = "its EXR dataWindow is " + std::to_string(width) + " x " +
-                        std::to_string(height) + " pixels; each side must lie in [1, " +
-                        std::to_string(most) + "]";
-                return false;
-            }
+            if (!fits(width, height, kPixelBytes, limit, error)) return false;
         }
         if (!reader.good) {
             error = "its EXR header is cut";
@@ -111,6 +104,33 @@ bool checkExrHeader(std::span<const uint8_t> bytes, uint32_t most, std::string& 
             return false;
         }
     }
+}
+
+}  // namespace
+
+bool fits(int64_t width, int64_t height, uint64_t bytesPerPixel, const PictureLimit& limit,
+          std::string& error) {
+    const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
+    if (width < 1 || height < 1 || width > limit.side || height > limit.side) {
+        error = "it is " + size + "; each side must lie in [1, " + std::to_string(limit.side) + "]";
+        return false;
+    }
+    const uint64_t memory = uint64_t(width) * uint64_t(height) * bytesPerPixel;
+    if (memory <= limit.bytes) return true;
+    error = "its " + size + " take " + std::to_string(memory) +
+            " bytes of memory; the limit for a file of its size is " + std::to_string(limit.bytes) +
+            ". Make it smaller";
+    return false;
+}
+
+bool checkHeader(std::span<const uint8_t> bytes, const PictureLimit& limit, std::string& error) {
+    static constexpr uint8_t kExr[] = {0x76, 0x2f, 0x31, 0x01};
+    if (bytes.size() >= 8 && std::memcmp(bytes.data(), kExr, 4) == 0)
+        return checkExr(bytes, limit, error);
+    // OpenImageIO decodes WebP when it opens it.
+    int width = 0, height = 0;
+    return !WebPGetInfo(bytes.data(), bytes.size(), &width, &height) ||
+           fits(width, height, kPixelBytes, limit, error);
 }
 
 }  // namespace fwimport

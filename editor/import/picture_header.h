@@ -1,4 +1,5 @@
-// Checks an EXR file's header before OpenEXR reads it, which reserves what the header says.
+// Checks the header of a picture before a library reads the file, which reserves what the header
+// says.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,21 @@
 
 namespace fwimport {
 
-// Returns false with `error` if an attribute is larger than the file, or a side longer than `most`
-// pixels. True for files of other formats.
-bool checkExrHeader(std::span<const uint8_t> bytes, uint32_t most, std::string& error);
+struct PictureLimit {
+    uint32_t side;   // pixels
+    uint64_t bytes;  // of memory, to read the picture
+};
+
+// Memory per pixel: the result in bytes, and as much again for each of two copies in the reader.
+constexpr uint64_t kPixelBytes = 12;
+
+// Returns false with `error` if a picture is beyond `limit`.
+bool fits(int64_t width, int64_t height, uint64_t bytesPerPixel, const PictureLimit& limit,
+          std::string& error);
+
+// Returns false with `error` if an attribute of an EXR is larger than the file, or an EXR or a WebP
+// is beyond `limit`. True for files of other formats, whose readers reserve nothing before the size
+// is known. `bytes`: an EXR whole, of others at least the first 64.
+bool checkHeader(std::span<const uint8_t> bytes, const PictureLimit& limit, std::string& error);
 
 }  // namespace fwimport

@@ -14,6 +14,7 @@
 #include "import/float_picture.h"
 #include "import/gltf_import.h"
 #include "import/gltf_uri.h"
+#include "import/image_decode.h"
 #include "unit/gltf_maker.h"
 
 namespace import_standard {
@@ -441,6 +442,85 @@ TEST(ImportMaterial, SmallImagesAreNotEnlargedWithoutLimit) {
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_EQ(1u, model.images.at(0).width) << "one pixel must not need 256 MiB";
     EXPECT_THAT(model.notes, Contains(HasSubstr("reach too far beyond the picture")));
+}
+
+// ---- memory
+
+// `count` instances at zero, which need no bytes of the file.
+std::vector<uint8_t> instanced(const std::string& count) {
+    Quad quad;
+    quad.accessors += R"(,{"componentType":5126,"count":)" + count + R"(,"type":"VEC3"})";
+    quad.node = R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":)"
+                R"({"TRANSLATION":2}}}})";
+    return quad.bytes();
+}
+
+TEST(ImportMemory, AFewBytesMakeNoHugeModel) {
+    ImportedModel model;
+    ASSERT_TRUE(loads(instanced("1000"), model));
+    EXPECT_EQ(1000u, model.parts);
+    EXPECT_THAT(importRefusal(instanced("5000000")),
+                HasSubstr("accessors[2] (nodes[0].extensions.EXT_mesh_gpu_instancing.attributes"
+                          ".TRANSLATION) has 5000000 x 3 numbers; the memory left for"));
+    EXPECT_THAT(importRefusal(instanced("1500000")),
+                HasSubstr("meshes[0].primitives[0] brings the memory of the model to"));
+
+    Quad sparse;
+    const int places = sparse.add(std::vector<uint32_t>{0, 1, 2}, 5125, "SCALAR", 3);
+    const int values = sparse.add(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 5126, "VEC3", 3);
+    sparse.positionAccessor =
+        R"({"componentType":5126,"count":16777216,"type":"VEC3","sparse":{"count":3,"indices":)"
+        R"({"bufferView":)" +
+        std::to_string(places) + R"(,"componentType":5125},"values":{"bufferView":)" +
+        std::to_string(values) + "}}}";
+    EXPECT_THAT(importRefusal(sparse.bytes()), HasSubstr("accessors[0]"));
+}
+
+// A file with `images` images of one picture, each used by a material and a triangle pair.
+std::vector<uint8_t> repeatedImages(const std::vector<uint8_t>& picture, int images) {
+    Quad quad;
+    const int view = quad.add(picture, 5121, "SCALAR", picture.size());
+    std::string materials, textures, list;
+    quad.primitive += R"(,"material":0)";
+    for (int i = 0; i < images; ++i) {
+        const std::string comma = i ? "," : "", number = std::to_string(i);
+        materials += comma + R"({"alphaMode":"BLEND","pbrMetallicRoughness":{"metallicFactor":0,)" +
+                     R"("baseColorTexture":{"index":)" + number + "}}}";
+        textures += comma + R"({"source":)" + number + "}";
+        list += comma + R"({"mimeType":"image/png","bufferView":)" + std::to_string(view) + "}";
+        if (i)
+            quad.primitive += R"(},{"attributes":{"POSITION":0},"indices":1,"material":)" + number;
+    }
+    quad.extra = R"(,"materials":[)" + materials + R"(],"textures":[)" + textures +
+                 R"(],"images":[)" + list + "]";
+    return quad.bytes();
+}
+
+TEST(ImportMemory, ImagesOfOnePictureShareTheLimitOfTheFile) {
+    constexpr uint32_t kSide = 1200;
+    const auto picture =
+        pictureOf("w.png", repeated({1, 0.5f, 0, 1}, size_t{kSide} * kSide), kSide, kSide);
+    const std::vector<uint8_t> bytes = repeatedImages(picture, 60);
+    ASSERT_LT(bytes.size(), 500000u);
+    ImportedModel model;
+    ASSERT_TRUE(loads(bytes, model));
+    ASSERT_EQ(60u, model.materials.size());
+    EXPECT_GT(model.images.size(), 8u);
+    EXPECT_LE(model.images.size() * kSide * kSide * 4, fwimport::mostUnpacked(bytes.size()));
+    EXPECT_THAT(model.notes, Contains(HasSubstr("images[59] is left out: its 1200 x 1200 pixels "
+                                                "take 17280000 bytes of memory")));
+}
+
+TEST(ImportMemory, SmallFilesOfLargePicturesAreRefused) {
+    // The header of a lossless WebP: sides less one, 14 bits each.
+    const std::string header("RIFF\x20\0\0\0WEBPVP8L\x14\0\0\0\x2f\xff\xdf\xff\x07", 25);
+    std::vector<uint8_t> webp(header.begin(), header.end());
+    webp.resize(40);
+    fwimport::DecodedImage image;
+    std::string error;
+    EXPECT_FALSE(fwimport::decodeImage(webp, image, error));
+    EXPECT_THAT(error, HasSubstr("its 8192 x 8192 pixels take 805306368 bytes of memory; the limit "
+                                 "for a file of its size is 251658240"));
 }
 
 // ---- extensions
