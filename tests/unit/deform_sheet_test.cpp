@@ -328,7 +328,7 @@ TEST(DeformSheet, UnburntLinksNeverBreak) {
 }
 
 TEST(DeformSheet, AcceptsDegenerateMeshes) {
-    for (uint32_t seed = 0; seed < 16; ++seed) {
+    for (uint32_t seed = 0; seed < fw::test::rounds(16u, 4u); ++seed) {
         const Mesh soup = makeSoup(seed);
         if (!refusal(soup.input(32)).empty()) continue;
         const BurnDomain domain = bakeOf(soup.input(32));
