@@ -1,8 +1,9 @@
 #!/bin/bash
 # Runs the checks that are too long for every change, one row per script in tests/long. A script's
 # first comment is its title; its line "# build: TARGET..." names its targets. A row has 20 minutes and
-# a folder in FW_LONG_FOLDER for partial results. Rows that passed for this tree are skipped, and an
-# interrupted row resumes. Called by tests/run --long [ROW]; a named row always runs.
+# a folder in FW_LONG_FOLDER for partial results; with status 75 it has more to do, and the next call
+# goes on. Rows that passed for this tree are skipped, and an interrupted row resumes. Called by
+# tests/run --long [ROW]; a named row that passed runs again.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=../../third_party/setup.sh
@@ -35,6 +36,7 @@ for script in "$here"/long/${named:-*}.sh; do
             timeout --kill-after=10 1200 bash "$script" 2>&1 | tee "$folder/log" || status=$?
         case $status in
             0) verdict=passed ;;
+            75) verdict="unfinished (run it again)" ;;
             77) verdict=skipped ;;
             124 | 137) verdict="failed (stopped after 1200 s)" ;;
             *) verdict="failed (status $status)" ;;
@@ -46,6 +48,7 @@ for script in "$here"/long/${named:-*}.sh; do
     case $verdict in
         passed*) passed=$((passed + 1)) ;;
         skipped*) skipped=$((skipped + 1)) ;;
+        unfinished*) skipped=$((skipped + 1)) && rm "$folder/verdict" ;;
         *) failed=$((failed + 1)) && rm "$folder/verdict" ;;
     esac
     table+=$(printf '%-20s %-32s %8s  %s' "$row" "${verdict%|*}" "${verdict#*|}" \
