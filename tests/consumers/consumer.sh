@@ -40,8 +40,10 @@ case $name in
         # Compiles each source separately and without precompiled headers, so that a missing include
         # fails here; Debug without debug information, because the whole library is compiled.
         build_project "-DFLAMEWRIGHT_SOURCE=$CCACHE_BASEDIR" -DCMAKE_BUILD_TYPE=Debug \
-            -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "${launcher[@]}"
+            -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DFW_BUILD_PORTABLE=ON \
+            "${launcher[@]}"
         "$work/build/consumer"
+        cmake --build "$work/build" --target flamewright_portable
         ;;
     pkg_config)
         install_library

@@ -43,8 +43,8 @@ cross() {
         -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_{INCLUDE,PACKAGE}=ONLY
 }
 
-# of_release: the program of the release build.
-of_release() { echo "${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/tests/portable/flamewright_portable"; }
+# of_build FOLDER: the program of the release build (FOLDER is empty) or of a build within its folder.
+of_build() { echo "${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}$1/tests/portable/flamewright_portable"; }
 
 program=("$folder/tests/portable/flamewright_portable")
 case $row in
@@ -56,7 +56,7 @@ case $row in
             echo "portable: shaders/shared/types.h does not refuse -ffast-math"
             exit 1
         fi
-        warnings=$("$(of_release)" upward)
+        warnings=$("$(of_build "")" upward)
         [[ $warnings == "log: This build is not exact"* ]] || {
             echo "portable: no warning of a process that rounds upward: \"$warnings\""
             exit 1
@@ -64,12 +64,18 @@ case $row in
         exit 0
         ;;
     release | old_processor | vulkan)
-        program=("$(of_release)")
+        program=("$(of_build "")")
         [[ $row != vulkan ]] || program+=(vulkan)
         # The C library chooses its functions by processor: here those without fused multiplications.
         [[ $row != old_processor ]] || export GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2
         ;;
-    gcc_O0) build -O0 ;;
+    gcc_O0)  # a host that compiles the library without optimization, assertions included
+        program=("$(of_build /consumers/subdirectory/build/flamewright)")
+        bash "$here/../consumers/consumer.sh" subdirectory >"$folder/log" 2>&1 || {
+            tail -n 60 "$folder/log"
+            exit 1
+        }
+        ;;
     gcc_O2) build -O2 ;;
     gcc_contract) build "-O3 -march=native -ffp-contract=fast" ;;
     gcc_v3) build "-O2 -march=x86-64-v3" ;;
