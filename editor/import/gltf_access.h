@@ -67,8 +67,8 @@ class GltfFile {
     // Adds a note if it lies outside the folder.
     std::vector<uint8_t> uri(const std::string& uri, const std::string& field);
 
-    // Counts memory that lives as long as the model, before it is allocated. Refuses what a file of
-    // this size may not unpack to (mostUnpacked). `who`: what it is for, in the error.
+    // Counts memory of the model and of its making; none is given back. Refuses more than a file of
+    // this size may unpack to (mostUnpacked). `who`: what the memory is for, in the error.
     void reserve(uint64_t bytes, const std::string& who);
     // Bytes that can still be reserved.
     [[nodiscard]] uint64_t memoryLeft() const { return mostUnpacked(packedBytes_) - reserved_; }
