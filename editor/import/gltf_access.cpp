@@ -209,11 +209,16 @@ std::vector<uint8_t> GltfFile::uri(const std::string& uri, const std::string& fi
 }
 
 void GltfFile::reserve(uint64_t bytes, const std::string& who) {
-    if (bytes > memoryLeft())
+    if (!tryReserve(bytes))
         refuse(who, " brings the memory of the model to ", reserved_ + bytes,
                " bytes; the limit for ", packedBytes_, " bytes of file is ",
                mostUnpacked(packedBytes_), ". Import a part of it, or make it smaller");
+}
+
+bool GltfFile::tryReserve(uint64_t bytes) {
+    if (bytes > memoryLeft()) return false;
     reserved_ += bytes;
+    return true;
 }
 
 std::span<const uint8_t> GltfFile::buffer(int index) {

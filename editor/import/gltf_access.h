@@ -70,6 +70,7 @@ class GltfFile {
     // Counts memory of the model and of its making; none is given back. Refuses more than a file of
     // this size may unpack to (mostUnpacked). `who`: what the memory is for, in the error.
     void reserve(uint64_t bytes, const std::string& who);
+    [[nodiscard]] bool tryReserve(uint64_t bytes);  // the same, but returns false
     // Bytes that can still be reserved.
     [[nodiscard]] uint64_t memoryLeft() const { return mostUnpacked(packedBytes_) - reserved_; }
 

@@ -132,7 +132,7 @@ void Materials::readSpecularGlossiness(const Field& from, ImportedMaterial& mate
         return;
     }
     const DecodedImage& plain = model_.images[static_cast<size_t>(material.image)];
-    if (!reserveBytes(plain.rgba.size(), from.path(), error)) {
+    if (!file_.tryReserve(plain.rgba.size())) {
         notes_.leaveOut("colour of metals in specularGlossinessTexture", from.path());
         return;
     }
@@ -279,31 +279,23 @@ int32_t Materials::imageIndex(int image, std::string& error) {
     return images_[image] = result;
 }
 
-bool Materials::reserveBytes(uint64_t bytes, const std::string& who, std::string& error) {
-    try {
-        file_.reserve(bytes, who);
-        return true;
-    } catch (const Refusal& refusal) {
-        error = refusal.what();
-        return false;
-    }
-}
-
 bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
     const Field image = file_.item("images", index);
     try {
+        std::vector<uint8_t> other;
+        std::span<const uint8_t> bytes;
         if (image.has("bufferView")) {
-            const Bytes view = file_.view(image.integer("bufferView", -1), image.path());
-            return decodeImage(view.span(), decoded, error, file_.memoryLeft()) &&
-                   reserveBytes(decoded.rgba.size(), image.path(), error);
-        }
-        if (!image.has("uri")) {
+            bytes = file_.view(image.integer("bufferView", -1), image.path()).span();
+        } else if (image.has("uri")) {
+            other = file_.uri(image.string("uri"), image.path() + ".uri");
+            bytes = other;
+        } else {
             error = "it has neither a uri nor a bufferView";
             return false;
         }
-        const std::vector<uint8_t> bytes = file_.uri(image.string("uri"), image.path() + ".uri");
-        return decodeImage(bytes, decoded, error, file_.memoryLeft()) &&
-               reserveBytes(decoded.rgba.size(), image.path(), error);
+        if (!decodeImage(bytes, decoded, error, file_.memoryLeft())) return false;
+        file_.reserve(decoded.rgba.size(), image.path());
+        return true;
     } catch (const Refusal& refusal) {
         error = refusal.what();
         return false;
@@ -367,9 +359,8 @@ void Materials::unwrapPictures() {
         constexpr uint64_t kMostBytes = 256ull << 20, kSmall = 4ull << 20;
         const uint64_t most = std::clamp(64 * uint64_t{image.rgba.size()}, kSmall, kMostBytes);
         const uint64_t bytes = 4 * static_cast<uint64_t>(axes[0].length * axes[1].length);
-        std::string error;
         if (axes[0].length > int64_t{kMaxImageSide} || axes[1].length > int64_t{kMaxImageSide} ||
-            bytes > most || !reserveBytes(bytes, uses_[m].sampler, error)) {
+            bytes > most || !file_.tryReserve(bytes)) {
             notes_.leaveOut(text("wrapS and wrapT of ", uses_[m].sampler), material.name,
                             "are shown as REPEAT: the UVs reach too far beyond the picture");
             continue;

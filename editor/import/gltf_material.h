@@ -55,8 +55,6 @@ class Materials {
     int32_t textureImage(const Field& info, TextureUse& use);
     int32_t imageIndex(int image, std::string& error);
     bool decode(int image, DecodedImage& decoded, std::string& error);
-    // GltfFile::reserve, but returns false with `error`.
-    bool reserveBytes(uint64_t bytes, const std::string& who, std::string& error);
 
     GltfFile& file_;
     ImportedModel& model_;

@@ -20,9 +20,9 @@ constexpr uint64_t kPixelBytes = 12;
 bool fits(int64_t width, int64_t height, uint64_t bytesPerPixel, const PictureLimit& limit,
           std::string& error);
 
-// Returns false with `error` if an attribute of an EXR is larger than the file, or an EXR or a WebP
-// is beyond `limit`. True for files of other formats, whose readers reserve nothing before the size
-// is known. `bytes`: an EXR whole, of others at least the first 64.
+// Returns false with `error` if an attribute of an EXR is larger than the file, a side of it beyond
+// `limit`, or a WebP beyond `limit`. True for files of other formats, whose readers reserve nothing
+// before the size is known. `bytes`: an EXR whole, of others at least the first 64.
 bool checkHeader(std::span<const uint8_t> bytes, const PictureLimit& limit, std::string& error);
 
 }  // namespace fwimport
