@@ -43,8 +43,8 @@ cross() {
         -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_{INCLUDE,PACKAGE}=ONLY
 }
 
-# of_build FOLDER: the program of the release build (FOLDER is empty) or of a build within its folder.
-of_build() { echo "${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}$1/tests/portable/flamewright_portable"; }
+# of_build [FOLDER]: the program of the release build, or of a build in a folder of it.
+of_build() { echo "${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}${1:-}/tests/portable/flamewright_portable"; }
 
 program=("$folder/tests/portable/flamewright_portable")
 case $row in
@@ -56,7 +56,7 @@ case $row in
             echo "portable: shaders/shared/types.h does not refuse -ffast-math"
             exit 1
         fi
-        warnings=$("$(of_build "")" upward)
+        warnings=$("$(of_build)" upward)
         [[ $warnings == "log: This build is not exact"* ]] || {
             echo "portable: no warning of a process that rounds upward: \"$warnings\""
             exit 1
@@ -64,7 +64,7 @@ case $row in
         exit 0
         ;;
     release | old_processor | vulkan)
-        program=("$(of_build "")")
+        program=("$(of_build)")
         [[ $row != vulkan ]] || program+=(vulkan)
         # The C library chooses its functions by processor: here those without fused multiplications.
         [[ $row != old_processor ]] || export GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2
@@ -101,6 +101,11 @@ case $row in
         ;;
 esac
 
+# Hashes show a fused multiplication only where it rounds otherwise.
+if [[ $row == gcc_contract || $row == gcc_v3 ]]; then
+    fused=$(objdump -d --no-show-raw-insn "$folder/plugin/libflamewright.so" | grep -c -E '\bvfn?m(add|sub)' || true)
+    [[ $fused == 0 ]] || { echo "portable: the library of $row has $fused fused multiplications" && exit 1; }
+fi
 status=0
 "${program[@]}" 2>"$folder/errors" | tr -d '\r' >"$folder/sessions.txt" || status=$?
 grep -v '^pcilib:\|^WARNING: lavapipe' "$folder/errors" || true
