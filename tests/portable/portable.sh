@@ -79,6 +79,7 @@ case $row in
     gcc_O2) build -O2 ;;
     gcc_contract) build "-O3 -march=native -ffp-contract=fast" ;;
     gcc_v3) build "-O2 -march=x86-64-v3" ;;
+    gcc_v4) build "-O2 -march=x86-64-v4" ;;
     clang)
         need clang++
         build -O2 -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++
@@ -102,9 +103,13 @@ case $row in
 esac
 
 # Hashes show a fused multiplication only where it rounds otherwise.
-if [[ $row == gcc_contract || $row == gcc_v3 ]]; then
+if [[ $row == gcc_* && $row != gcc_O* ]]; then
     fused=$(objdump -d --no-show-raw-insn "$folder/plugin/libflamewright.so" | grep -c -E '\bvfn?m(add|sub)' || true)
     [[ $fused == 0 ]] || { echo "portable: the library of $row has $fused fused multiplications" && exit 1; }
+fi
+if [[ $row == gcc_v4 ]] && ! grep -q -w avx512f /proc/cpuinfo; then
+    echo "portable: the library of gcc_v4 has no fused multiplications; this processor cannot run it"
+    exit 0
 fi
 status=0
 "${program[@]}" 2>"$folder/errors" | tr -d '\r' >"$folder/sessions.txt" || status=$?
