@@ -87,6 +87,7 @@ void main() {
     vec3 up = view.up.xyz;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
         BurnTile tile = burnTiles[i];
+        if (!burnTileAlive(tile.object, tile.tile)) continue;
         vec3 wind = view.wind.xyz + 0.001 * vec3(unpackWind(objects[tile.object].zoneWind));
         vec3 drift = wind - up * dot(wind, up);
         uint seed = hash32(hash32(tile.object * 7919u + view.seed) ^ tile.tile);

@@ -14,6 +14,11 @@ TileRef tileRef(uint worldTile) {
               r.local < objects[r.object].tileCount;
     return r;
 }
+// Burning tiles are listed anew with each `reduce`: is the object of one still there? Another may be
+// in its slot.
+bool burnTileAlive(uint object, uint local) {
+    return (objects[object].flags & kObjectLive) != 0u && local < objects[object].tileCount;
+}
 // Texel of a lane of a tile, in the object's own map.
 uint texelOf(uint object, uint local, uint lane) {
     uint tilesX = objects[object].tilesX;

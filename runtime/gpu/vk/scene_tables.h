@@ -116,7 +116,6 @@ struct SceneTables {
     std::pmr::vector<Quarantined> quarantine{memory};
     uint32_t liveObjects = 0;
     uint32_t partMeshes = 0;    // of parts that touch
-    bool initialized = false;   // the buffers that must start as zero do
     bool recordsDirty = false;  // some object has dirty records or a reset due
     std::array<Room, kMaxRooms> rooms{};
     bool roomsDirty = false;

@@ -50,14 +50,6 @@ void recordChanges(BackendState& s, const FramePlan& plan, const FrameNeeds& nee
     const Table& vk = s.device.table;
     if (s.buffers.recordMoves(vk, s.open.commands, s.open.ringFrame))
         s.barriers.begin(vk, s.open.commands);  // rare: waits for all of the moves
-    if (!s.scene.initialized) {
-        for (const uint32_t resource :
-             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_CLUSTERS,
-              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_EXCHANGE_OBJECTS,
-              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
-            recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
-        s.scene.initialized = true;
-    }
     s.scene.uploads.record(s.device, s.open.commands, s.barriers, s.buffers, s.open.ringFrame);
     if (s.scene.recordsDirty) s.surfaces.recordObjects(s, recorder);
     if (s.scene.roomsDirty) recorder.upload(FW_BIND_ROOMS, 0, std::span<const Room>(s.scene.rooms));

@@ -24,16 +24,17 @@ constexpr uint32_t kCounterRows = kRowIteration + 64 * kMaxSubsteps + 1;  // one
 // Beside words: dropped where a device has too few texels.
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
 
-constexpr bool kRefilled = false;  // BufferRow::keepsContent
+constexpr BufferRow::Content kRefilled = BufferRow::refilled, kZeroed = BufferRow::zeroed;
 
 // All buffers of a world. Buffers of a pool grow together.
 constexpr BufferRow kBuffers[] = {
     // binding, name, pool, stride, component, extra usage, content when it grows
-    {FW_BIND_OBJECTS, "object records", kPoolObjects, sizeof(BurnObject), kComponentObjects},
+    {FW_BIND_OBJECTS, "object records", kPoolObjects, sizeof(BurnObject), kComponentObjects, 0,
+     kZeroed},
     {FW_BIND_MATERIALS, "materials", kPoolObjects, sizeof(BurnMaterial) * kMaterialsPerObject,
      kComponentObjects},
     {FW_BIND_OBJECT_COUNTERS, "object counters", kPoolObjects, sizeof(ObjectCounters),
-     kComponentObjects},
+     kComponentObjects, 0, kZeroed},
     {FW_BIND_TEXELS, "texels", kPoolMeshTiles, 8 * kTileTexels, kComponentMeshes},
     {FW_BIND_NORMALS, "normals", kPoolMeshTiles, 4 * kTileTexels, kComponentMeshes},
     {FW_BIND_TILES, "tiles", kPoolMeshTiles, 32, kComponentMeshes},
@@ -47,7 +48,8 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_STATE, "state", kPoolObjectTiles, 4 * kTileTexels, kComponentObjects},
     {FW_BIND_PENDING, "pending", kPoolObjectTiles, 4 * kTileTexels, kComponentObjects},
     {FW_BIND_SETTLED, "settled", kPoolObjectTiles, 4 * kTileTexels / 8, kComponentObjects},
-    {FW_BIND_TILE_STATE, "tile state", kPoolObjectTiles, sizeof(TileState), kComponentObjects},
+    {FW_BIND_TILE_STATE, "tile state", kPoolObjectTiles, sizeof(TileState), kComponentObjects, 0,
+     kZeroed},
     {FW_BIND_FRONT_LISTS, "front lists", kPoolObjectTiles, 8, kComponentLists},
     {FW_BIND_RUN, "run list", kPoolObjectTiles, 16, kComponentLists, 0, kRefilled},
     {FW_BIND_SCRATCH, "scratch", kPoolObjectTiles, 6 * kTileTexels, kComponentLists, 0, kRefilled},
@@ -58,7 +60,7 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_GRADIENT, "gradient", kPoolObjectTiles, 4 * kTileTexels, kComponentPredict},
     {FW_BIND_PREDICT_LISTS, "predict lists", kPoolObjectTiles, 8, kComponentPredict},
     {FW_BIND_COUNTERS, "counters", kPoolIterations, sizeof(IterationCounters), kComponentLists,
-     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, kZeroed},
     {FW_BIND_EVENTS, "events", kPoolEvents, sizeof(TexelEvent), kComponentLists, 0, kRefilled},
     {FW_BIND_WAKE_GROUPS, "wake groups", kPoolWakeGroups, 8, kComponentLists, 0, kRefilled},
     {FW_BIND_PROBES, "probes", kPoolProbes, 8, kComponentLists, 0, kRefilled},
@@ -85,7 +87,7 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_SKIN_GIVEN, "skin vertices", kPoolSkinGiven, 4, kComponentObjects, 0, kRefilled},
     {FW_BIND_SKIN_TEXELS, "skin texels", kPoolSkin, 16 * kTileTexels, kComponentMeshes},
     {FW_BIND_EXCHANGE_OBJECTS, "exchange objects", kPoolObjects, sizeof(ExchangeObject),
-     kComponentObjects},
+     kComponentObjects, 0, kZeroed},
     {FW_BIND_EXCHANGE_TILES, "exchange tiles", kPoolMeshTiles, sizeof(ExchangeTile),
      kComponentMeshes},
     {FW_BIND_SOURCES, "fire sources", kPoolSources, sizeof(FireSource), kComponentObjects},
@@ -96,14 +98,15 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_HEAT_OCCLUDERS, "occluders", kPoolFixed, sizeof(HeatOccluder) * kMaxHeatOccluders,
      kComponentObjects},
     {FW_BIND_HEAT_OCCLUSION, "heat occlusion", kPoolOcclusion, 4, kComponentObjects},
-    {FW_BIND_ROOMS, "rooms", kPoolFixed, sizeof(Room) * kMaxRooms, kComponentObjects},
-    {FW_BIND_ROOM_AIR, "rooms' air", kPoolFixed, sizeof(RoomAir) * kMaxRooms, kComponentObjects},
+    {FW_BIND_ROOMS, "rooms", kPoolFixed, sizeof(Room) * kMaxRooms, kComponentObjects, 0, kZeroed},
+    {FW_BIND_ROOM_AIR, "rooms' air", kPoolFixed, sizeof(RoomAir) * kMaxRooms, kComponentObjects, 0,
+     kZeroed},
     {FW_BIND_LIGHTS, "lights", kPoolFixed, sizeof(BurnLight), kComponentFlames,
-     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
-    {FW_BIND_CLUSTERS, "clusters", kPoolFixed, 4, kComponentFlames},
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, kZeroed},
+    {FW_BIND_CLUSTERS, "clusters", kPoolFixed, 4, kComponentFlames, 0, kZeroed},
     {FW_BIND_FLAMES, "flame quads", kPoolFlames, sizeof(FlameQuad), kComponentFlames},
     {FW_BIND_DRAW_ARGS, "draw arguments", kPoolFlames, 8, kComponentFlames,
-     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, kZeroed},
     {FW_BIND_EMITTERS, "emitters", kPoolEmitters, sizeof(ParticleEmitter), kComponentFlames, 0,
      kRefilled},
     {FW_BIND_EMITTER_GROUPS, "emitter groups", kPoolEmitterGroups, 8, kComponentFlames, 0,
@@ -114,7 +117,7 @@ constexpr BufferRow kBuffers[] = {
      kTexels},
     {FW_BIND_FLIPBOOKS, "flipbooks", kPoolFixed, 4 * kFlipbookWords, kComponentFlames},
     {FW_BIND_REFINE_OBJECTS, "refined objects", kPoolObjects, sizeof(RefineObject),
-     kComponentRefine},
+     kComponentRefine, 0, kZeroed},
     {FW_BIND_REFINE_DRAWS, "refined draws", kPoolObjects, 20 * kMaterialsPerObject,
      kComponentRefine, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_REFINE_TRIANGLES, "coarse triangles", kPoolRefineMeshTriangles, sizeof(RefineTriangle),
@@ -292,7 +295,7 @@ void WorldBuffers::resize(BufferPool pool, uint32_t units, uint64_t lastFrame) {
         Slot& slot = slots_[i];
         if (!slot.recorded)
             deviceMemory_.destroy(slot.now);  // no frame ever saw it
-        else if (slot.row.keepsContent)
+        else if (slot.row.content != BufferRow::refilled)
             std::swap(slot.before, slot.now);
         else
             retired_.push(lastFrame, slot.now);
@@ -406,9 +409,15 @@ uint64_t WorldBuffers::bytes(BufferPool pool) const noexcept {
 bool WorldBuffers::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex) {
     bool moved = false;
     for (Slot& slot : slots_) {
+        const bool fresh = slot.now.handle && !slot.recorded;
         slot.recorded = slot.now.handle != VK_NULL_HANDLE;
+        const uint64_t kept = std::min(slot.before.size, slot.now.size);
+        if (fresh && slot.row.content == BufferRow::zeroed && kept < slot.now.size) {
+            table.CmdFillBuffer(commands, slot.now.handle, kept, VK_WHOLE_SIZE, 0);
+            moved = true;
+        }
         if (!slot.before.handle) continue;
-        const VkBufferCopy all{0, 0, std::min(slot.before.size, slot.now.size)};
+        const VkBufferCopy all{0, 0, kept};
         table.CmdCopyBuffer(commands, slot.before.handle, slot.now.handle, 1, &all);
         retired_.push(frameIndex, slot.before);  // resize reserved for it
         moved = true;

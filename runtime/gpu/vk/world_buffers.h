@@ -92,7 +92,9 @@ struct BufferRow {
     uint32_t stride = 0;  // bytes of a unit of the pool
     Component component = kComponentObjects;
     VkBufferUsageFlags extraUsage = 0;  // beyond storage and transfer
-    bool keepsContent = true;           // when it grows
+    // When it grows its content stays, or goes, or stays with zeros behind it. The last kind begins
+    // as zeros, too: passes read more of such a buffer than objects own.
+    enum Content : uint8_t { kept, refilled, zeroed } content = kept;
 };
 
 struct WorldSizes {       // of the fixed buffers
@@ -194,7 +196,7 @@ class WorldBuffers {
     }
     // Changes whenever a buffer is another one: descriptor sets are rewritten then.
     [[nodiscard]] uint64_t generation() const noexcept { return generation_; }
-    // Records the copies that growth left over. True: something was recorded.
+    // Records the copies that growth left over, and zeros. True: something was recorded.
     bool recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex);
     [[nodiscard]] bool movesPending() const noexcept { return movesPending_; }
     void rows(std::pmr::vector<MemoryRow>& out) const;  // [any]
