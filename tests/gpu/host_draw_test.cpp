@@ -327,6 +327,9 @@ TEST_F(HostDraw, MaterialFamiliesCreateTheirPipelinesOnFirstUse) {
 // a composite, and with effects at half resolution.
 TEST_F(HostDraw, DrawsOnlyInsideTheScissor) {
     if (!device_) return;
+    // One of 255: with the shaders of GPU-assisted validation a driver rounded otherwise where the
+    // scissor cuts a triangle.
+    constexpr float kAlike = 1.5f / 255;
     Shot inPass, composite, half;
     composite.composite = half.composite = true;
     half.depthMode = FW_DEPTH_SAMPLED;
@@ -347,7 +350,7 @@ TEST_F(HostDraw, DrawsOnlyInsideTheScissor) {
                     continue;
                 }
                 inside += drawn;
-                differ += a[0] != b[0] || a[1] != b[1] || a[2] != b[2];
+                for (int k = 0; k < 3; ++k) differ += std::abs(a[k] - b[k]) > kAlike;
             }
         EXPECT_EQ(outside, 0u);
         EXPECT_EQ(differ, 0u);
