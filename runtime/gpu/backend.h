@@ -107,9 +107,13 @@ struct Probe {
 };
 
 struct VolumeFlame;    // shared/volume.h
+struct FlameBody;      // shared/body.h
 struct VolumeUpdate {  // the volumetric flames that draws show from this frame on; cosmetic
     const VolumeFlame* flames = nullptr;  // their bounds are in the records
     uint32_t count = 0;                   // at most kMaxVolumeFlames
+    // The last of the flames are the fires of burning objects: bodies, without nodes.
+    const FlameBody* bodies = nullptr;
+    uint32_t bodyCount = 0;  // at most kMaxBodies
 };
 
 struct ParticleEmitter;  // shared/particle.h

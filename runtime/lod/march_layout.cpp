@@ -5,6 +5,7 @@
 #include "core/assert.h"
 #include "lod/tiers.h"
 #include "lod/volumes.h"
+#include "shared/body.h"
 
 #include <algorithm>
 #include <array>
@@ -38,11 +39,17 @@ constexpr float kSmokeCells = 4.0f;
 constexpr float kSmokeTiles = 4.0f;
 constexpr uint64_t kFewTiles = 32;  // of a flame, which keeps its cells as long as others have more
 
+// Of a body's cells: fire around a curved surface is flatter than the surface.
+constexpr float kNearer = 0.3f;
+
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
 uint32_t wordsOfTile(uint32_t slabs) {
     return kMarchTileWords + kMarchTileSide * kMarchTileSide * kMarchPixelWords * slabs;
 }
+
+// Of a tile of a body.
+uint32_t nodeWords(uint32_t slabs) { return kBodyNodes * kBodyNodeWords * slabs; }
 
 struct Tiles {
     uint32_t originX, originY, x, y;
@@ -219,7 +226,12 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
                                  float perPixel, uint32_t words, std::span<MarchedVolume> out,
                                  uint32_t first) {
     Layout layout(items, screen);
-    const uint64_t room = words > first ? (words - first) / wordsOfTile(screen.slabs) : 0;
+    uint32_t bodies = 0;
+    for (const VolumeItem& item : items) bodies += item.body1 != 0 ? 1 : 0;
+    const uint64_t taken = first + uint64_t(bodies) * kBodyWords;
+    const uint32_t tileWords =
+        wordsOfTile(screen.slabs) + (bodies > 0 ? nodeWords(screen.slabs) : 0);
+    const uint64_t room = words > taken ? (words - taken) / tileWords : 0;
     if (!layout.fit(room)) return {};
     VolumeAllocation placed;
     placed.end = first + uint32_t(layout.tiles() * kMarchTileWords);
@@ -284,6 +296,13 @@ VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const Volume
         }
         known += count * kMarchTileWords;
         samples += march.pixels * kMarchPixelWords * draw.slabs;
+        one.body = item.body1 != 0;
+        if (one.body) {
+            march.body = item.body1 - 1;
+            composite.nearer = kNearer * draw.wide;
+            march.flames = samples;
+            samples += kBodyWords + count * nodeWords(draw.slabs);
+        }
     }
     FW_ASSERT(samples <= words, "word %u of %u", samples, words);
     return placed;

@@ -25,6 +25,7 @@ struct VolumeItem {  // a volumetric flame that a view may show
     vec3 tip{};               // m, from there to where its mean height ends
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
     bool smokes = false;
+    uint32_t body1 = 0;        // number + 1 of a burning object's body of fire; 0: a flame
     bool highQuality = false;  // FW_FIRE_TIER_MARCH_HIGH was requested for
     vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
 };
@@ -56,6 +57,7 @@ struct MarchedVolume {  // one whose rays are marched before the drawing, and ho
     uint32_t flame = 0;
     bool smokes = false;  // marched by volume_smoke
     bool window = false;  // finer cells where it burns, of the one before it
+    bool body = false;    // a burning object's, marched by the passes of bodies
     MarchPush march{};
     CompositePush composite{};
 };

@@ -99,6 +99,7 @@ BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory) {
     measureShapes(grid, domain);
     buildTiles(grid, domain);
     buildTileBounds(domain);
+    buildFlameCells(domain);
     linkParts(domain);
     bakeThickness(surface, grid, domain.thickness);
     bakeSlowness(input, grid, surface.low, surface.extent, domain.slowness);

@@ -117,6 +117,11 @@ struct BurnDomain {
     std::pmr::vector<TileStatic> tiles{memory};     // tilesX * tilesY
     std::pmr::vector<TileBounds> tileBounds{
         memory};  // per tile, for queries; not stored when cooked
+    // Cells of neighbouring tiles that face alike, for drawing: each shows one flame. Not stored
+    // when cooked.
+    std::pmr::vector<uint32_t> flameCells{memory};  // per tile; kNone: it has no real texels
+    uint32_t flameCellCount = 0;                    // at most gpu::kBodyCells
+    float flameCellSide = 0;                        // m
     std::pmr::vector<uint32_t> partLinks{
         memory};  // 4 per tile, as gpu::ExchangeTile::parts; not stored
                   // when cooked. Empty: no part is near another one

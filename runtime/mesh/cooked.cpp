@@ -305,6 +305,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     checkFront(domain);
     checkDrawn(domain);
     buildTileBounds(domain);
+    buildFlameCells(domain);
     linkParts(domain);
     return domain;
 }

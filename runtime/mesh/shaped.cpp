@@ -113,6 +113,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
             std::swap(out.indices[i + 1], out.indices[i + 2]);
     FW_ASSERT(growth > 0 && growth < 1e12, "growth %g", growth);
     buildTileBounds(out);
+    buildFlameCells(out);
     linkParts(out);
     return out;
 }

@@ -99,6 +99,7 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain);
 void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain);
 // Bounds of every tile's real texels, for queries.
 void buildTileBounds(BurnDomain& domain);
+void buildFlameCells(BurnDomain& domain);
 // Links parts that share no edge but come near each other: a roof on its walls, a cart's wheel.
 void linkParts(BurnDomain& domain);
 inline float floatAtLeast(double value) {

@@ -1,6 +1,11 @@
 // Tiles: their texels with link records, their texels that other tiles read, and those tiles.
 // Also the bounds that make queries fast.
 #include "mesh/texels.h"
+#include "shared/body.h"
+#include "shared/burn.h"
+
+#include <cmath>
+#include <tuple>
 
 namespace fw::mesh {
 namespace {
@@ -61,6 +66,59 @@ void buildTileBounds(BurnDomain& domain) {
             }
         });
     }
+}
+
+// The smallest cells that are few enough, and no smaller than a tile.
+void buildFlameCells(BurnDomain& domain) {
+    struct Key {
+        int x = 0, y = 0, z = 0, facing = 0;  // facing: axis and sign
+        uint32_t tile = 0;
+    };
+    const auto place = [](const Key& key) { return std::tie(key.x, key.y, key.z, key.facing); };
+    std::pmr::vector<Key> keys(domain.memory);
+    std::pmr::vector<glm::dvec3> middles(domain.tileCount(), glm::dvec3(0), domain.memory);
+    std::pmr::vector<int> facings(domain.tileCount(), -1, domain.memory);
+    double all = 0;  // texels
+    for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
+        glm::ivec3 normal(0);
+        double count = 0;
+        eachTexel(domain, tile, [&](uint32_t texel) {
+            middles[tile] += domain.placeOf(texel);
+            normal += gpu::decodeNormal(domain.normals[texel]);
+            count += 1;
+        });
+        if (count == 0) continue;
+        middles[tile] /= count;
+        all += count;
+        const glm::ivec3 size = glm::abs(normal);
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        facings[tile] = 2 * axis + (normal[axis] < 0 ? 1 : 0);
+    }
+    const double each = 0.6 * std::sqrt(all / double(gpu::kBodyCells));  // texels a side
+    float side = std::max(float(kTileSide), float(each)) * domain.texelSide;
+    for (;; side *= 1.1f) {
+        keys.clear();
+        for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
+            if (facings[tile] < 0) continue;
+            const auto cell = [&](int i) {
+                return int(
+                    std::floor((middles[tile][i] - double(domain.boundsLow[i])) / double(side)));
+            };
+            keys.push_back({cell(0), cell(1), cell(2), facings[tile], tile});
+        }
+        std::ranges::sort(keys, {}, [&](const Key& key) {
+            return std::tuple_cat(place(key), std::tie(key.tile));
+        });
+        uint32_t count = 0;
+        domain.flameCells.assign(domain.tileCount(), kNone);
+        for (size_t i = 0; i < keys.size(); ++i) {
+            if (i == 0 || place(keys[i]) != place(keys[i - 1])) ++count;
+            domain.flameCells[keys[i].tile] = count - 1;
+        }
+        domain.flameCellCount = count;
+        if (count <= gpu::kBodyCells) break;
+    }
+    domain.flameCellSide = side;
 }
 
 }  // namespace fw::mesh

@@ -23,13 +23,16 @@ void moveState(components::FireState& state, const double (&by)[3]) noexcept {
 
 FlameSystem::FlameSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
                          const ExchangeSystem& exchange, BurnSystem& burn)
-    : context_(context), scene_(scene), wind_(wind), exchange_(exchange), burn_(burn) {}
+    : context_(context), scene_(scene), wind_(wind), exchange_(exchange), burn_(burn) {
+    reserve(0);
+}
 
 void FlameSystem::reserve(uint32_t more) {
     size_t flames = more;
     for (auto [i, fire] : fires_.entries()) flames += fire.data.partCount;
     const size_t room = burning_.reserveFlames(flames);
-    if (flames_.size() < room) flames_.resize(room);
+    if (flames_.size() < std::min<size_t>(room + gpu::kMaxBodies, gpu::kMaxVolumeFlames))
+        flames_.resize(std::min<size_t>(room + gpu::kMaxBodies, gpu::kMaxVolumeFlames));
     shapes_.reserve(kMaxShapes);
 }
 
@@ -190,9 +193,14 @@ void FlameSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
             octaves = std::min(octaves, context_.def.volumeOctaves);
         }
     }
-    FW_ASSERT(count <= flames_.size(), "%u of %zu flames", count, flames_.size());
-    update_ = {flames_.data(), count};
-    if (fires_.live() > 0 || shown_ > 0) plan.volumes = &update_;
+    uint32_t bodies = 0;
+    // Where flipbooks show flames, or nothing does, there are none.
+    if (context_.backend.draws() && context_.def.maxFlames > 0 && flameFlipbooks_[0].index1 == 0)
+        bodies = bodies_.write(context_, scene_, wind_, frame.seconds,
+                               std::span(flames_).subspan(count));
+    FW_ASSERT(count + bodies <= flames_.size(), "%u of %zu flames", count, flames_.size());
+    update_ = {flames_.data(), count + bodies, bodies_.records(), bodies};
+    if (fires_.live() > 0 || shown_ > 0 || bodies > 0) plan.volumes = &update_;
 }
 
 void FlameSystem::commit() noexcept {

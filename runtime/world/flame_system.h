@@ -6,6 +6,7 @@
 #include "flipbook/flipbook.h"
 #include "volume/depth_picture.h"
 #include "world/command.h"
+#include "world/fire_bodies.h"
 #include "world/scene.h"
 #include "world/slotted.h"
 
@@ -176,9 +177,10 @@ class FlameSystem {
     uint32_t pictures_ = 0;
     components::FireFlames burning_{context_.memory};
     std::pmr::vector<gpu::VolumeFlame> flames_{context_.memory};  // room for a frame's flames
-    gpu::VolumeUpdate update_;                                    // of `flames_`
-    uint32_t shown_ = 0;                                          // that the backend draws
-    uint32_t made_ = 0;                                           // since ever
+    FireBodies bodies_;
+    gpu::VolumeUpdate update_;  // of `flames_`
+    uint32_t shown_ = 0;        // that the backend draws
+    uint32_t made_ = 0;         // since ever
 };
 
 }  // namespace fw::world

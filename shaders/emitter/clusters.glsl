@@ -1,6 +1,6 @@
 // Hash grid of heat-release clusters: two sizes per object, keyed by place. Slots depend on
 // thread order, contents do not.
-#include "shared/types.h"
+#include "emitter/flame_laws.glsl"
 
 float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8)); }
 // Side of the clusters that form lights, m: fixed per object, so nothing pops.
@@ -20,12 +20,6 @@ vec3 flamePlaceOf(BurnTile tile, float side) {
     return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) +
            view.up.xyz * (0.1 * side);
 }
-// Wood flames as long as it lasts, but most heat is released near the front. age: ticks since
-// ignition; share: of the duration.
-float flameFade(BurnMaterial material, float age, float share) {
-    float lasting = share * max(6.0 * appearances[material.appearance].charTime, 8.0);
-    return 0.04 + 0.96 * exp(-age * (1.0 / 4096.0) * material.timeScale / lasting);
-}
 float flameFade(BurnTile tile) {
     return flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 1.0);
 }
@@ -40,11 +34,6 @@ uint clusterKey(ivec3 cell, float side) {
 const uint kClusterProbes = 24u;
 const float kFlameCover = 3.8;  // overlapping quads over a burning area
 
-// Flame height by Heskestad, m; a wide weak fire counts as many small ones.
-float flameLength(float watts, float area) {
-    float tall = 0.235 * pow(max(watts, 1.0) * 1e-3, 0.4), diameter = sqrt(area * 1.273);
-    return max(tall - 0.6 * diameter, 0.45 * tall);
-}
 // W and m^2 that flame in the cluster of this key.
 vec2 clusterFire(uint key) {
     for (uint i = 0u; i < kClusterProbes; ++i) {

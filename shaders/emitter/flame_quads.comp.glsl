@@ -6,6 +6,7 @@
 #include "shared/particle.h"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)
 FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(CLUSTERS)
+FW_READ(BODY_OF)
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 #include "emitter/clusters.glsl"
 #include "emitter/flipbooks.glsl"
@@ -123,6 +124,8 @@ void main() {
                 appearances[materials[tile.object * kMaterialsPerObject].appearance];
             float odds = smoke ? min(0.10 * quads * mainAppearance.smoke, 0.5) :
                 min(quads / 3.0, 1.0);
+            bool body = !smoke && bodyOf[tile.object] != 0u;
+            if (body && (push.switches & kSwitchBodies) != 0u) continue;
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
             float period =
@@ -185,7 +188,8 @@ void main() {
                 // Lit by the fire below from birth.
                 quad.kelvin = 1.0 - a;
             }
-            quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
+            quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue) |
+                        (body ? kQuadOfBody : 0u);
             // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame,
             // its foot at 1/20.
             uint flipbook = push.count >> (smoke ? 8u : 0u) & 0xFFu;

@@ -112,4 +112,6 @@ void main() {
     gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
     if (kPart != kPartAll && ((quad.kind & 3u) == kQuadSpark) != (kPart == kPartSparks))
         gl_Position = vec4(-2.0, -2.0, 0.0, 1.0);  // belongs to the other part
+    if (view.quads.w > 0.5 && (quad.kind & kQuadOfBody) != 0u)
+        gl_Position = vec4(-2.0, -2.0, 0.0, 1.0);
 }

@@ -135,6 +135,10 @@ const uint kRunBits = 3u;
 #define FW_BUFFER_FIELD_COUNTERS(access) FW_BUFFER(FIELD_COUNTERS, access, FieldCounters, counters)
 #define FW_BUFFER_FIELD_SHOWN(access) FW_BUFFER(FIELD_SHOWN, access, uint, shown)
 #define FW_BUFFER_FIELD_DRAWS(access) FW_BUFFER(FIELD_DRAWS, access, FieldDraw, draws)
+#define FW_BUFFER_BODIES(access) FW_BUFFER(BODIES, access, FlameBody, bodies)
+#define FW_BUFFER_FLAME_CELLS(access) FW_BUFFER(FLAME_CELLS, access, uint, flameCells)
+#define FW_BUFFER_BODY_OF(access) FW_BUFFER(BODY_OF, access, uint, bodyOf)
+#define FW_BUFFER_BODY_CELLS(access) FW_BUFFER(BODY_CELLS, access, uint, bodyCells)
 #define FW_BUFFER_VOLUME_RAYS(access) FW_BUFFER(VOLUME_RAYS, access, uint, rays)
 #define FW_BUFFER_VOLUME_WORK(access) FW_BUFFER(VOLUME_WORK, access, VolumeWork, work)
 #endif

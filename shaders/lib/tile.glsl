@@ -14,8 +14,8 @@ TileRef tileRef(uint worldTile) {
               r.local < objects[r.object].tileCount;
     return r;
 }
-// Burning tiles are listed anew with each `reduce`: is the object of one still there? Another may be
-// in its slot.
+// Is the object of a burning tile still there? Another may have its slot before `reduce` lists the
+// tiles again.
 bool burnTileAlive(uint object, uint local) {
     return (objects[object].flags & kObjectLive) != 0u && local < objects[object].tileCount;
 }

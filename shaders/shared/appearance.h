@@ -127,7 +127,8 @@ struct ViewParams {          // uniform block, one per view
     uint seed;
     vec4 viewport;           // px: x, y, width, height
     vec4 quads;  // x: visible share of flames and particles; y: widening that compensates it; z:
-                 // share of its own fires that the last light represents
+                 // share of its own fires that the last light represents; w: 1 where bodies show
+                 // the flames of their objects, 0: quads do
 };
 FW_SIZE(ViewParams, 240)
 
@@ -212,6 +213,7 @@ FW_CONST uint kQuadFire = 2u;    // of a particle
 FW_CONST uint kQuadSpark = 3u;
 FW_CONST uint kQuadSeed = 2u;   // shifts
 FW_CONST uint kQuadFlipbookShift = 18u;
+FW_CONST uint kQuadOfBody = 1u << 30;  // of an object whose flames a view may show as one body
 FW_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
 // Half widths by which flame quads are nearer to the camera: a wall behind does not cut them.
 FW_CONST float kQuadNearer = 0.35f;

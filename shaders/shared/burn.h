@@ -87,6 +87,10 @@
 #define FW_BIND_VOLUMES 90  // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
 #define FW_BIND_VOLUME_RAYS 91  // uint[]: marched flames of a view, see volume_draw.h
 #define FW_BIND_VOLUME_WORK 92  // VolumeWork[]: result of the probe per flame
+#define FW_BIND_BODIES 93  // FlameBody[]: of burning objects, see body.h
+#define FW_BIND_BODY_OF 94  // uint[], by object slot: its body + 1; 0: none
+#define FW_BIND_BODY_CELLS 95  // uint[]: cells of all bodies, see body_cells
+#define FW_BIND_FLAME_CELLS 96  // uint[] (per mesh): cell of each tile, see body.h
 #define FW_BIND_FIELDS 110  // FieldRecord[], by field slot: see field.h
 #define FW_BIND_FIELD_CELLS 111  // uint[]: fieldCell, twice (per field)
 #define FW_BIND_FIELD_MASKS 113  // uint[]: one byte per cell (per field)
@@ -181,6 +185,7 @@ FW_CONST uint kSwitchNoDepthFirst = 256u;
 // internal: an object or the world limits its fire.
 FW_CONST uint kSwitchGoverned = 0x10000u;
 FW_CONST uint kSwitchPlayback = 0x80000u;     // internal: an object may play a baked burn
+FW_CONST uint kSwitchBodies = 0x200000u;  // internal: no view needs flame quads of bodies
 FW_CONST uint kSwitchDisplayOnly = 0x100000u;    // internal: `reduce` writes BurnTiles only
 
 // TexelEvent::kind, as FwIgnitionKind

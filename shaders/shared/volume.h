@@ -262,6 +262,52 @@ FW_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float 
 
 // ---- appearance
 
+// Noise of hot gas that left p, m across the flame, and is z m along the pattern that rises with it:
+// rolling eddies, and the slow field that varies the height of tongues.
+FW_FN vec3 flameEddy(FlameRecord f, vec2 p, float z) {
+    return flameCurl(vec3(p.x / f.lambdaWarp + f.place.x,
+                          z / f.lambdaWarp + f.place.y - f.warpScroll,
+                          p.y / f.lambdaWarp + f.place.z));
+}
+FW_FN float flameColumn(FlameRecord f, vec2 p, float z) {
+    return flameNoise(vec3(p.x / f.lambdaColumn + f.place.y,
+                           0.35f * z / f.lambdaColumn + f.place.z - f.columnScroll,
+                           p.y / f.lambdaColumn + f.place.x));
+}
+
+struct FlameTurbulence { float rough; float sheet; };
+// Unbiased turbulence, half signed, half ridged, and the noise whose zeros are sheets; smaller eddies
+// move at their own speeds. lambda: footprints of a sample in half a wavelength.
+FW_FN FlameTurbulence flameTurbulence(FlameRecord f, vec2 p, float z, float lambda) {
+    vec3 x = vec3(p.x / f.lambda + f.place.z, z / f.lambda + f.place.x, p.y / f.lambda + f.place.y);
+    FlameTurbulence noise;
+    noise.rough = 0.0f; noise.sheet = 0.0f;
+    float weight = 1.0f;
+    vec4 scroll = f.scroll;
+    uint o = 0u;
+    do {  // all lanes run the same number of iterations
+        float fade = o == 0u ? 1.0f : clamp(lambda - 0.5f, 0.0f, 1.0f);
+        float n = flameNoise(x - vec3(0.0f, scroll.x, 0.0f));
+        noise.rough += weight * fade * (f.ridge * (2.2f * kFlameMeanAbs) +
+                                        (1.3f - 1.3f * f.ridge) * n - (2.2f * f.ridge) * abs(n));
+        noise.sheet += weight * fade * n * (o == 0u ? 1.0f : 0.6f);
+        weight *= 0.5f; lambda *= 0.5f;
+        x = vec3(2.03f * x.x + 11.3f, 2.0f * x.y + 7.7f, 2.03f * x.z + 5.1f);
+        scroll = vec4(scroll.y, scroll.z, scroll.w, 0.0f);
+        o += 1u;
+    } while (o < f.octaves);
+    return noise;
+}
+
+// Soot lies in sheets where the advected noise is 0, the crests of the displacement. thin: a sample's
+// footprint, in wavelengths; tip: of the flame.
+FW_FN float flameFilament(FlameRecord f, float sheet, float thin, float tip) {
+    float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
+    float filament =
+        f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
+    return sheet > 0.0f ? max(filament, f.tipFill * smoothstep(0.3f, 0.9f, tip)) : filament;
+}
+
 // size: m, footprint of the sample (the larger of step and pixel); finer detail fades.
 FW_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     FlameLookup lookup;
@@ -283,44 +329,20 @@ FW_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     // Gas flows in over the base: tongues lean inward.
     float narrow = 1.0f - 0.6f * f.converge * rise;
     vec2 p = at.p / narrow;
-    vec3 eddy =
-        flameCurl(vec3(p.x / f.lambdaWarp + f.place.x, z / f.lambdaWarp + f.place.y - f.warpScroll,
-                       p.y / f.lambdaWarp + f.place.z));
+    vec3 eddy = flameEddy(f, p, z);
     p += vec2(eddy.x, eddy.z) * (f.warp * diameter * grow);
     float yw = y + eddy.y * (0.5f * f.warp * grow);
     // Tongues of unequal height, changing slowly.
-    float column = flameNoise(vec3(p.x / f.lambdaColumn + f.place.y,
-                                   0.35f * z / f.lambdaColumn + f.place.z - f.columnScroll,
-                                   p.y / f.lambdaColumn + f.place.x));
+    float column = flameColumn(f, p, z);
     yw /= max(0.25f, 1.0f + f.columns * (column + 0.10f));
-    // Unbiased turbulence: half signed, half ridged; smaller eddies move at their own speeds.
-    vec3 x = vec3(p.x / f.lambda + f.place.z, z / f.lambda + f.place.x, p.y / f.lambda + f.place.y);
-    float rough = 0.0f; float sheet = 0.0f; float weight = 1.0f;
-    float lambda = f.lambda * narrow / (2.0f * size);
-    vec4 scroll = f.scroll;
-    uint o = 0u;
-    do {  // all lanes run the same number of iterations
-        float fade = o == 0u ? 1.0f : clamp(lambda - 0.5f, 0.0f, 1.0f);
-        float n = flameNoise(x - vec3(0.0f, scroll.x, 0.0f));
-        rough += weight * fade * (f.ridge * (2.2f * kFlameMeanAbs) +
-                                  (1.3f - 1.3f * f.ridge) * n - (2.2f * f.ridge) * abs(n));
-        sheet += weight * fade * n * (o == 0u ? 1.0f : 0.6f);
-        weight *= 0.5f; lambda *= 0.5f;
-        x = vec3(2.03f * x.x + 11.3f, 2.0f * x.y + 7.7f, 2.03f * x.z + 5.1f);
-        scroll = vec4(scroll.y, scroll.z, scroll.w, 0.0f);
-        o += 1u;
-    } while (o < f.octaves);
+    FlameTurbulence noise = flameTurbulence(f, p, z, f.lambda * narrow / (2.0f * size));
+    float rough = noise.rough;
     // The foot stays lit for any noise.
     lookup.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
     lookup.rho = length(p) * narrow / radius *
         (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
     lookup.erode = f.erode * smoothstep(0.2f, 1.2f, y);
-    // Soot lies in sheets where the advected noise is 0, the crests of the displacement.
-    float thin = 0.7f * size / (f.lambda * narrow);
-    float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
-    float filament =
-        f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
-    if (sheet > 0.0f) filament = max(filament, f.tipFill * smoothstep(0.3f, 0.9f, y));
+    float filament = flameFilament(f, noise.sheet, 0.7f * size / (f.lambda * narrow), y);
     lookup.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
                      f.filament * smoothstep(0.0f, f.filamentHeight, y));
     // Prevents islands beside the foot and an edge at the tube's end.

@@ -125,7 +125,9 @@ FW_CONST uint kMarchTileList = 2u;          // marched tiles
 FW_CONST uint kMarchQuarterSide = 4u;
 FW_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
 FW_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
-FW_CONST uint kMarchTileWords = 12u;    // pixels begin after whole texels of these
+// Of a body: kBodyMaskWords words instead, one bit per flame.
+FW_CONST uint kMarchBodyMask = 3u;
+FW_CONST uint kMarchTileWords = 16u;    // pixels begin after whole texels of these
 // Quarter x, y.
 FW_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }
 
@@ -150,7 +152,8 @@ struct MarchPush {
     uint apart;           // march pixels between rays of the probe: 1, 2, 4
     uint perPixel;        // as CompositePush's
     uint least;           // least samples per ray, see sampleRefinement; 0: no minimum
-    uint reserved0; uint reserved1;
+    uint body;            // of a burning object's fire: its number, and
+    uint flames;          // words of FW_BIND_VOLUME_RAYS: first of its flames, then of its nodes
 };
 FW_SIZE(MarchPush, 112)
 
@@ -179,7 +182,8 @@ struct CompositePush {
     // March pixels per side of a pixel: 2, 4, 8, in one tile; 0: a march pixel is a pixel or more.
     uint perPixel;
     float from; float to; // see passesDither
-    uint reserved0; uint reserved1;
+    float nearer;         // m by which its light counts as nearer than it is
+    uint reserved0;
     // Low x, y, high x, y, march pixels from the origin: a finer march shows the flame there.
     vec4 window;
     vec4 base;            // as VolumeDraw's

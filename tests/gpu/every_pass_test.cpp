@@ -323,7 +323,14 @@ class EveryPass : public GpuTest {
         plan.steps = steps;
         plan.probes = probes;
         if (what.probes) plan.burnMaps = {&map, 1};
-        const gpu::VolumeUpdate volumes{flames_, 4};
+        flames_[4] = flames_[0];  // as the fire of an object
+        ++flames_[4].record.key;
+        const mesh::BurnDomain& domain = scene_->domains[0];
+        gpu::FlameBody body{};
+        body.low = {domain.boundsLow[0], domain.boundsLow[1], domain.boundsLow[2],
+                    domain.flameCellSide};
+        body.cells = domain.flameCellCount;
+        const gpu::VolumeUpdate volumes{flames_, 5, &body, 1};
         if (what.effects) plan.volumes = &volumes;
         const gpu::uvec2 group(0, 0);
         gpu::EmitterUpdate emitters;
@@ -538,7 +545,7 @@ class EveryPass : public GpuTest {
     std::pmr::vector<uint32_t> occlusionWords_;
     std::vector<gpu::ContactLink> links_;
     gpu::HeatOccluder occluder_{};
-    gpu::VolumeFlame flames_[4]{};
+    gpu::VolumeFlame flames_[5]{};
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};
     uint32_t fieldStep_ = 0;

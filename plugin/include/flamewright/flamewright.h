@@ -211,7 +211,8 @@ typedef struct FwWorldDef {
     uint32_t seed;              /* default 1. Seeds noise and everything cosmetic */
     uint32_t maxStepsPerFrame;  /* [1, 64], default 8. Time beyond it is dropped and counted: FW_EVENT_TIME_DROPPED */
     uint32_t maxLights;         /* [0, 64], default 16 */
-    uint32_t maxFlames;         /* [0, 65536], default 4096. Flame quads that are simulated; at most 4096 are drawn */
+    uint32_t maxFlames;         /* [0, 65536], default 4096. Flame quads that are simulated; at most 4096 are drawn. 0:
+                                   burning meshes show no flames */
     uint64_t userData;
     uint32_t maxRefinedTriangles; /* [1000, 16000000], default 400000. Target for all refined objects together.
                                      60000 suits software devices */

@@ -31,6 +31,7 @@ struct ViewInput {  // of ViewParams
     uint32_t lightCount = 0, flameCapacity = 0, seed = 0;
     float lastLight = 1;  // share of its own fires that the last light shines for
     float quadShare = 1;  // of flames' quads and particles that show
+    bool bodies = false;  // bodies of fire show, so flame quads of their objects do not
 };
 // The host's view as the uniform block that shaders read.
 [[nodiscard]] ViewParams makeViewParams(const ViewInput& input) noexcept;

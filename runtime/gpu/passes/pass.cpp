@@ -29,6 +29,9 @@ constexpr ComputePass kComputePasses[] = {
 #define FW_SOFT_SHADERS(name) \
     { name ".frag", name "_soft.frag", name "_soft_ms.frag" }
 constexpr const char* kCompositeTexelShaders[] = FW_SOFT_SHADERS("volume_composite_texels");
+constexpr const char* kBodyTexelShaders[] = {"body_composite_texels.frag",
+                                             "volume_composite_texels_soft.frag",
+                                             "volume_composite_texels_soft_ms.frag"};
 constexpr const char* kImpostorTexelShaders[] = FW_SOFT_SHADERS("volume_impostor_texels");
 
 struct SoftShaders {
@@ -154,6 +157,10 @@ constexpr auto kDrawPasses = [] {
     passes[draw::volume_impostor].texelShaders = kImpostorTexelShaders;
     passes[draw::volume_composite] = FW_SOFT_PASS("volume_composite", sizeof(CompositePush));
     passes[draw::volume_composite].texelShaders = kCompositeTexelShaders;
+    passes[draw::body_composite] = passes[draw::volume_composite];
+    passes[draw::body_composite].name = "body_composite";
+    passes[draw::body_composite].fragmentShader = "body_composite.frag";
+    passes[draw::body_composite].texelShaders = kBodyTexelShaders;
     passes[draw::volume_haze] = {.name = "volume_haze",
                                  .vertexShader = "volume_haze.vert",
                                  .fragmentShader = nullptr,

@@ -3,6 +3,7 @@
 // and from its shaders' declarations.
 #pragma once
 #include "shared/appearance.h"
+#include "shared/body.h"
 #include "shared/burn.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
@@ -183,6 +184,7 @@ enum Number : uint32_t {
     volume,
     volume_impostor,
     volume_composite,
+    body_composite,
     volume_haze,
     field_emitting,
     field_absorbing,

@@ -51,7 +51,8 @@ ViewParams makeViewParams(const ViewInput& input) noexcept {
     p.lightCount = input.lightCount;
     p.flameCapacity = std::min(input.flameCapacity, kFlameCapacity);
     p.seed = input.seed;
-    p.quads = vec4(input.quadShare, 1.0f / std::sqrt(input.quadShare), input.lastLight, 0);
+    p.quads = vec4(input.quadShare, 1.0f / std::sqrt(input.quadShare), input.lastLight,
+                   input.bodies ? 1.0f : 0.0f);
     p.viewport = vec4(input.viewport[0], input.viewport[1], input.viewport[2], input.viewport[3]);
     return p;
 }

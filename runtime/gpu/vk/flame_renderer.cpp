@@ -190,7 +190,9 @@ void MarchFrame::chooseTiers() noexcept {
         requested[i] = {box.key,           box.tier, volumeWide(items_[i].draw, march_.screen),
                         areaOf(items_[i]), ready,    atlas && atlas->shares > 1};
         const bool extended = box.tier == core::reserved::kFireTier;
-        if (extended && !extension()->showsVolumes(march_.screen.encoding))
+        if (box.body1 != 0)
+            requested[i].requested = FW_FIRE_TIER_MARCH_HIGH;
+        else if (extended && !extension()->showsVolumes(march_.screen.encoding))
             requested[i].requested = FW_FIRE_TIER_MARCH_LOW;
         else if (!extended && !impostorFits(items_[i]))
             requested[i].requested = FW_FIRE_TIER_MARCH_HIGH;  // around the camera
@@ -301,7 +303,8 @@ void MarchFrame::order() noexcept {
         if (!isShown(i)) continue;
         const TierLife& life = march_.lives[places_[i]];
         for (; shown < marched_.count && march_.items[shown].flame == items_[i].flame; ++shown)
-            march_.order.add(draw::volume_composite, shown);
+            march_.order.add(
+                march_.items[shown].body ? draw::body_composite : draw::volume_composite, shown);
         if (life.shows(core::reserved::kFireTier)) {
             float from = 0, to = 1;
             setFade(life, life.tier == core::reserved::kFireTier, from, to);
@@ -363,16 +366,25 @@ void MarchFrame::showAtlas(const VolumeItem& item, uint32_t place, uint32_t numb
 void FlameRenderer::record(const VolumeUpdate& update, FrameRecorder& recorder) {
     volumes.clear();
     const std::span<const VolumeFlame> flames(update.flames, update.count);
+    FW_ASSERT(update.bodyCount <= update.count, "%u bodies", update.bodyCount);
     for (const VolumeFlame& flame : flames) {
         const FlameRecord& record = flame.record;
         VolumeBox box;
         box.low = record.low;
         box.high = record.high;
-        box.intervals = volumeIntervals(flame.nodes, kFlameNodes);
-        box.base = vec3(flame.nodes[0].centre);
         box.key = record.key;
         box.tier = record.tier;
         box.smokes = record.smoke > 0.0f;
+        const auto number = uint32_t(volumes.size());
+        if (number + update.bodyCount >= update.count) {
+            box.body1 = number + update.bodyCount - update.count + 1;
+            box.flameLow = record.low, box.flameHigh = record.high;
+            box.base = vec3(flame.record.glow);
+            volumes.push_back(box);
+            continue;
+        }
+        box.intervals = volumeIntervals(flame.nodes, kFlameNodes);
+        box.base = vec3(flame.nodes[0].centre);
         box.basePlane = volumeBasePlane(record, flame.nodes, kFlameNodes);
         box.kind = atlasKind(record, flame.nodes, kFlameNodes, box.tip);
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
@@ -380,7 +392,9 @@ void FlameRenderer::record(const VolumeUpdate& update, FrameRecorder& recorder) 
         FW_ASSERT(volumes.size() < volumes.capacity(), "%u flames", update.count);
         volumes.push_back(box);
     }
+    bodyCount = update.bodyCount;
     recorder.upload(FW_BIND_VOLUMES, 0, flames);
+    recorder.upload(FW_BIND_BODIES, 0, std::span(update.bodies, update.bodyCount));
 }
 
 uint32_t FlameRenderer::order(const BackendState& s, uint32_t slabs,
@@ -401,7 +415,8 @@ uint32_t FlameRenderer::order(const BackendState& s, uint32_t slabs,
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
         volumeSlabs(s.seen, box.flameLow, box.flameHigh, item.draw);
-        if (slabs > 1) volumeBase(s.seen, box.basePlane, item.draw);
+        if (slabs > 1 && box.body1 == 0) volumeBase(s.seen, box.basePlane, item.draw);
+        item.body1 = box.body1;
         VolumeDraw burning;
         const bool burns =
             box.smokes && volumeDraw(s.seen, box.flameLow, box.flameHigh, slabs, burning);

@@ -15,6 +15,7 @@ struct VolumeBox {  // as in FlameRecord
     vec3 base{};                   // where it stands
     uint32_t key = 0, tier = 0;
     bool smokes = false;
+    uint32_t body1 = 0;          // its number + 1, of a burning object's; 0: a flame
     vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
     AtlasKind kind;
     vec3 tip{};        // as VolumeItem's
@@ -42,7 +43,10 @@ struct FlameRenderer {
     // Bytes of device memory that follow a plan's Detail::memory.
     [[nodiscard]] uint64_t detailBytes(const BackendState& s) const noexcept;
 
-    std::pmr::vector<VolumeBox> volumes;              // that draws show
+    std::pmr::vector<VolumeBox> volumes;  // that draws show
+    uint32_t bodyCount = 0;               // of those, the last
+    bool bodiesShow = false;              // in the view that is recorded
+    uint64_t quadsUntil = 0;  // ring frame: a view was drawn without its march, and may be again
     uint32_t volumeStepsNow = Detail{}.rayStepCount;  // on its way to detail's
 };
 

@@ -354,6 +354,17 @@ void clearMarch(FrameRecorder& r, const MarchRecord& march) {
     r.fillZero(FW_BIND_VOLUME_WORK, 0, (last + 1) * sizeof(VolumeWork));
 }
 
+// The burning objects whose flames are one body, and what burns in their cells.
+void recordBodies(BackendState& s, FrameRecorder& r, StepPush push) {
+    r.fillZero(FW_BIND_BODY_OF, 0, uint64_t(s.buffers.capacity(kPoolObjects)) * 4);
+    if (s.flames.bodyCount == 0) return;
+    push.count = s.flames.bodyCount;
+    r.fillZero(FW_BIND_BODY_CELLS, 0,
+               uint64_t(s.flames.bodyCount) * kBodyCells * kBodyCellWords * 4);
+    r.dispatchItems(pass::body_numbers, push, push.count);
+    r.dispatch(pass::body_cells, push, 16);
+}
+
 }  // namespace
 
 void recordEffects(BackendState& s, FrameInFlight& slot) {
@@ -372,6 +383,7 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
     StepPush push{};
     push.now = s.open.endTick;
     push.burnParity = s.simulation.lists.burnParity;
+    if (burns && looked) recordBodies(s, r, push);
     if (burns) r.dispatch(pass::lights, push, 1);
     const TileShare soot =
         burns ? s.simulation.sootShare(s.buffers.capacity(kPoolObjectTiles), s.open.endTick, looked)
@@ -396,18 +408,24 @@ void recordEffects(BackendState& s, FrameInFlight& slot) {
         // The lights begin the first view's quads.
         if ((emits && !burns) || (burns && of->number != 0))
             view.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+        const MarchRecord march = marches ? s.flames.march(s, *of) : MarchRecord{};
+        const bool bodies = !march.volumes.empty() && slot.frameIndex >= s.flames.quadsUntil;
+        push.switches = bodies ? kSwitchBodies : 0u;
         if (burns) view.dispatch(pass::flame_quads, push, 16);
         if (s.particles.emitterGroups > 0)
             view.dispatch(pass::particle_quads, moving, s.particles.emitterGroups);
         if (s.particles.sparkSources > 0)
             view.dispatch(pass::sparks, sparks, s.particles.sparkSources * kSparkGroups);
         if (burns || emits) view.dispatch(pass::flame_sort, room, 1);
-        if (const MarchRecord march = marches ? s.flames.march(s, *of) : MarchRecord{};
-            !march.volumes.empty()) {
+        if (!march.volumes.empty()) {
             clearMarch(view, march);
             view.dispatchVolumes(pass::volume_probe, march.volumes, VolumesOf::all);
             view.dispatchVolumes(pass::volume_march, march.volumes, VolumesOf::clear);
             view.dispatchVolumes(pass::volume_smoke, march.volumes, VolumesOf::smoke);
+            view.dispatchVolumes(pass::body_flames, march.volumes, VolumesOf::bodyFlames);
+            view.dispatchVolumes(pass::body_tiles, march.volumes, VolumesOf::bodyTiles);
+            view.dispatchVolumes(pass::body_field, march.volumes, VolumesOf::bodies);
+            view.dispatchVolumes(pass::body_march, march.volumes, VolumesOf::bodies);
         }
     }
     if (fieldsShow)

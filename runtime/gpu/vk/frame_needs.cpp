@@ -171,7 +171,8 @@ FrameNeeds needsOf(BackendState& s, const FramePlan& plan) {
     checkLimits(s, plan, needs);
     choosePasses(s, plan, needs);
     if (plan.volumes)
-        needs.uploadBytes += uploaded(uint64_t(plan.volumes->count) * kVolumeFlameBytes);
+        needs.uploadBytes += uploaded(uint64_t(plan.volumes->count) * kVolumeFlameBytes) +
+                             uploaded(uint64_t(plan.volumes->bodyCount) * sizeof(FlameBody));
     if (plan.emitters)
         needs.uploadBytes += uploaded(plan.emitters->count * sizeof(ParticleEmitter)) +
                              uploaded(plan.emitters->groups.size_bytes()) +
@@ -205,6 +206,7 @@ FrameInFlight& makeRoom(BackendState& s, const FramePlan& plan, const FrameNeeds
     }
     if (plan.volumes) {
         s.buffers.atLeast(kPoolVolumes, kVolumeWorks * plan.volumes->count, last);
+        s.buffers.atLeast(kPoolBodies, plan.volumes->bodyCount, last);
         s.flames.volumes.reserve(plan.volumes->count);
     }
     if (plan.emitters) s.particles.makeRoom(s, *plan.emitters, last);

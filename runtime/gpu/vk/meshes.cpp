@@ -70,8 +70,8 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
         return (uint64_t(0) + ... + std::span(parts).size_bytes());
     };
     PendingUpload& upload = s.scene.uploads.stage(
-        bytesOf(domain.texels, domain.normals, domain.tiles, exchangeTiles, domain.slowness,
-                domain.links, domain.dependents, domain.vertices, domain.indices),
+        bytesOf(domain.texels, domain.normals, domain.tiles, domain.flameCells, exchangeTiles,
+                domain.slowness, domain.links, domain.dependents, domain.vertices, domain.indices),
         "mesh staging");
     static_assert(sizeof(mesh::TexelPosition) == 8 && sizeof(mesh::TileStatic) == 32);
     const auto add = [&](uint32_t resource, const BufferRange& range, uint64_t perUnit,
@@ -81,6 +81,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     add(FW_BIND_TEXELS, fresh.meshTiles, kTileTexels, domain.texels);
     add(FW_BIND_NORMALS, fresh.meshTiles, kTileTexels, domain.normals);
     add(FW_BIND_TILES, fresh.meshTiles, 1, domain.tiles);
+    add(FW_BIND_FLAME_CELLS, fresh.meshTiles, 1, domain.flameCells);
     add(FW_BIND_EXCHANGE_TILES, fresh.meshTiles, 1, exchangeTiles);
     add(FW_BIND_SLOWNESS, fresh.slowness, kTileTexels, domain.slowness);
     add(FW_BIND_LINKS, fresh.links, 8, domain.links);

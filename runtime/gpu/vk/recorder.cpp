@@ -57,29 +57,45 @@ void FrameRecorder::dispatchAt(uint32_t pass, const void* push, uint32_t resourc
 void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
                                     std::span<const MarchedVolume> volumes, VolumesOf which) {
     const Table& vk = s_.device.table;
-    const bool listed = which != VolumesOf::all;
+    const bool ofBodies = which >= VolumesOf::bodyFlames;
+    const bool listed =
+        which == VolumesOf::clear || which == VolumesOf::smoke || which == VolumesOf::bodies;
     const auto taken = [&](const MarchedVolume& one) {
-        return !listed || one.smokes == (which == VolumesOf::smoke);
+        return one.body == ofBodies &&
+               (!listed || ofBodies || one.smokes == (which == VolumesOf::smoke));
     };
     if (std::none_of(volumes.begin(), volumes.end(), taken)) return;
     const PassObjects& objects =
         begin(pass.number, listed ? uint32_t(FW_BIND_VOLUME_WORK) : kNoResource);
     const VkBuffer work = buffer(FW_BIND_VOLUME_WORK);
-    vk.CmdBindDescriptorSets(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
-                             &s_.scene.profiles.set.set, 0, nullptr);
+    if (objects.declared.sets() > 1)
+        vk.CmdBindDescriptorSets(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout,
+                                 1, 1, &s_.scene.profiles.set.set, 0, nullptr);
     const VkDescriptorSet set = s_.sets.compute(pass.number, view_);
+    const bool usesView = objects.declared.usesView();
+    const bool usesFlame = std::ranges::any_of(
+        objects.declared.uses(), [](const Use& use) { return use.resource == FW_BIND_VOLUMES; });
     for (const MarchedVolume& one : volumes) {
         if (!taken(one)) continue;
         // In the order of their bindings: the view, the flame.
-        const std::array<uint32_t, 2> offsets{viewOffset_, one.flame * kVolumeFlameBytes};
+        std::array<uint32_t, 2> offsets{};
+        uint32_t count = 0;
+        if (usesView) offsets[count++] = viewOffset_;
+        if (usesFlame) offsets[count++] = one.flame * kVolumeFlameBytes;
         vk.CmdBindDescriptorSets(s_.open.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout,
-                                 0, 1, &set, uint32_t(offsets.size()), offsets.data());
+                                 0, 1, &set, count, offsets.data());
         vk.CmdPushConstants(s_.open.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                             sizeof one.march, &one.march);
         if (listed)
             vk.CmdDispatchIndirect(
                 s_.open.commands, work,
                 one.march.flame * sizeof(VolumeWork) + offsetof(VolumeWork, groups));
+        else if (ofBodies)
+            vk.CmdDispatch(s_.open.commands,
+                           groupsOf(which == VolumesOf::bodyFlames
+                                        ? kBodyCells
+                                        : one.composite.tilesX * one.composite.tilesY),
+                           1, 1);
         else
             vk.CmdDispatch(s_.open.commands,
                            probeBlockCount(one.composite.tilesX, one.march.apart) *

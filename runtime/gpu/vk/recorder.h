@@ -18,8 +18,9 @@ constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor; shaders s
 constexpr uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
 
 // Volumetric flames: all, with the groups of the probe; or those with and without smoke, with the
-// groups that the probe listed.
-enum class VolumesOf : uint8_t { all, clear, smoke };
+// groups that the probe listed. Bodies of fire: with a thread for each flame, or for each tile, or
+// with the groups that were listed.
+enum class VolumesOf : uint8_t { all, clear, smoke, bodyFlames, bodyTiles, bodies };
 
 // Groups of three words in a row of the counters.
 enum class RowPart : uint64_t {

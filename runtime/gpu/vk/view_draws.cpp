@@ -260,7 +260,7 @@ class ViewDraws {
 
     // Collects the fields and volumetric flames that the view shows. A flame that was not marched
     // for this view is marched while it is drawn.
-    void prepare(OutsideView& of, const FwView& view);
+    void prepare(OutsideView& of, const FwView& view, const VolumeScreen& screen);
     void record() {
         for (uint32_t i = 0; i < uint32_t(DrawPhase::Count); ++i)
             if (const auto phase = DrawPhase(i); isIncluded(phase) && hasWork(phase)) record(phase);
@@ -308,13 +308,10 @@ class ViewDraws {
     const VolumeOrder* order_ = nullptr;
 };
 
-void ViewDraws::prepare(OutsideView& of, const FwView& view) {
+void ViewDraws::prepare(OutsideView& of, const FwView& view, const VolumeScreen& screen) {
     turned_ = turnsFaces(s_, view, viewport_);
     fieldCount_ = s_.particleFields.order(s_, fields_);
     if (!target_.key.flames || s_.flames.volumes.empty()) return;
-    const float share = part_ == DrawPart::over ? 0.5f : 1.0f;
-    const VolumeScreen screen = s_.flames.screenOf(
-        s_, target_.key, {share * viewport_.width, share * std::fabs(viewport_.height)});
     of.recordScreen(view, screen, slot_.frameIndex);
     if (of.isMarchedFor(view, screen)) {
         march_ = &of.march;
@@ -326,6 +323,7 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
         const uint32_t least = of.minRays(view, screen);
         uint32_t whole = 0, called = 0;
         for (uint32_t i = 0; i < count; ++i) {
+            if (items_[i].body1 != 0) continue;  // shown where it was marched
             if (s_.flames.volumes[items_[i].flame].tier == core::reserved::kFireTier &&
                 extension()->showsVolumes(screen.encoding)) {
                 ownCalls_[called] = extension()->volumeCall(items_[i], 0, 1);
@@ -461,6 +459,7 @@ void ViewDraws::recordVolumes(const VolumeRun& run) {
                 case draw::volume_impostor:
                     recorder.drawVertices(&march_->impostors[i], kVolumeSplitVertices);
                     break;
+                case draw::body_composite:
                 case draw::volume_composite: {
                     const MarchedVolume& one = march_->items[i];
                     recorder.drawListed(
@@ -483,12 +482,31 @@ void ViewDraws::recordVolumes(const VolumeRun& run) {
 
 }  // namespace
 
+namespace {
+
+constexpr uint64_t kQuadsKept = 60;  // frames that flame quads are there after a view needed them
+
+// On which a part of a view's draws shows its marches.
+VolumeScreen screenOf(const BackendState& s, const Target& target, const VkViewport& viewport,
+                      DrawPart part) noexcept {
+    const float share = part == DrawPart::over ? 0.5f : 1.0f;
+    return s.flames.screenOf(s, target.key,
+                             {share * viewport.width, share * std::fabs(viewport.height)});
+}
+
+}  // namespace
+
 void recordDraws(BackendState& s, FrameInFlight& slot, VkCommandBuffer commands,
                  const Target& target, const FwView& view, const VkViewport& viewport,
                  const HostImages& host, DrawPart part) {
     if (!s.showsAnything() || s.targets.transparency >= 1.0f) return;
     OutsideView& of = s.outsideViews.viewFor(s.sets, view);
     s.targets.drawnView = of.number;
+    const VolumeScreen screen = screenOf(s, target, viewport, part);
+    if (s.flames.bodyCount > 0 && target.key.flames) {
+        s.flames.bodiesShow = of.isMarchedFor(view, screen);
+        if (!s.flames.bodiesShow) s.flames.quadsUntil = slot.frameIndex + kQuadsKept;
+    }
     const uint32_t viewOffset = s.pushView(slot, view, viewport);
     if (part != DrawPart::half) {
         const float height = std::fabs(viewport.height);
@@ -497,8 +515,9 @@ void recordDraws(BackendState& s, FrameInFlight& slot, VkCommandBuffer commands,
     }
     setViewport(s, commands, viewport);
     ViewDraws draws(s, slot, commands, target, viewport, host, part, viewOffset);
-    draws.prepare(of, view);
+    draws.prepare(of, view, screen);
     draws.record();
+    s.flames.bodiesShow = false;
 }
 
 }  // namespace fw::gpu::vk

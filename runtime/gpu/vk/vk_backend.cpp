@@ -164,6 +164,7 @@ uint32_t BackendState::pushView(FrameInFlight& slot, const FwView& view,
         particles.lightCount > 0 ? particles.lightCount - float(input.lightCount - 1) : 1;
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
     input.quadShare = particles.quadShare;
+    input.bodies = flames.bodiesShow;
     input.seed = limits.seed;
     seen = makeViewParams(input);
     const uint32_t offset = (ring.indexOf(slot) * FrameRing::kMaxViews + slot.views) * viewStride;

@@ -3,6 +3,7 @@
 #include "core/assert.h"
 #include "core/error.h"
 #include "shared/appearance.h"
+#include "shared/body.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
@@ -38,6 +39,7 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_TEXELS, "texels", kPoolMeshTiles, 8 * kTileTexels, kComponentMeshes},
     {FW_BIND_NORMALS, "normals", kPoolMeshTiles, 4 * kTileTexels, kComponentMeshes},
     {FW_BIND_TILES, "tiles", kPoolMeshTiles, 32, kComponentMeshes},
+    {FW_BIND_FLAME_CELLS, "cells of flames", kPoolMeshTiles, 4, kComponentMeshes},
     {FW_BIND_SLOWNESS, "slowness", kPoolSlowness, 2 * kTileTexels, kComponentMeshes},
     {FW_BIND_LINKS, "links", kPoolLinks, 32, kComponentMeshes},
     {FW_BIND_DEPENDENTS, "dependents", kPoolDependents, 4, kComponentMeshes},
@@ -145,6 +147,11 @@ constexpr BufferRow kBuffers[] = {
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, kRefilled},
     {FW_BIND_VOLUMES, "volumes", kPoolVolumes, kVolumeFlameBytes, kComponentFlames,
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, kRefilled},
+    {FW_BIND_BODIES, "bodies of fire", kPoolBodies, sizeof(FlameBody), kComponentFlames, 0,
+     kRefilled},
+    {FW_BIND_BODY_OF, "bodies by object", kPoolObjects, 4, kComponentFlames, 0, kRefilled},
+    {FW_BIND_BODY_CELLS, "cells of bodies", kPoolBodies, 4 * kBodyCellWords* kBodyCells,
+     kComponentFlames, 0, kRefilled},
     {FW_BIND_VOLUME_RAYS, "marched volumes", kPoolVolumeRays, 4, kComponentFlames, kTexels,
      kRefilled},
     {FW_BIND_VOLUME_WORK, "volumes' work", kPoolVolumes, sizeof(VolumeWork), kComponentFlames,

@@ -60,6 +60,7 @@ enum BufferPool : uint32_t {
     kPoolContacts,         // links between objects, as of the last update
     kPoolVolumes,          // volumetric flames, per frame
     kPoolVolumeRays,       // words, of a view
+    kPoolBodies,           // burning objects with one body of fire, per frame
     kPoolEmitters,         // fire emitters, per frame
     kPoolEmitterGroups,    // per frame
     kPoolSparks,           // sources of sparks, per frame
