@@ -2,7 +2,7 @@
 // Also the bounds that make queries fast.
 #include "mesh/texels.h"
 #include "shared/body.h"
-#include "shared/burn.h"
+#include "shared/front.h"
 
 #include <cmath>
 #include <tuple>

@@ -87,8 +87,7 @@ void main() {
     FlameRecord f = flame.record;
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
-    uint tiles = march.pixels / (kMarchTileSide * kMarchTileSide);
-    uint tile = rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
+    uint tile = listedTile();
     uint slabs = march.slabs | zero, encoding = march.encoding | zero;
     uint row = quotient22(tile, march.tilesX);
     uvec2 in_ = gl_LocalInvocationID.xy;

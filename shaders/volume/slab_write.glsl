@@ -1,6 +1,12 @@
 // Output of a march: what each slab of a march pixel adds, and which slabs of a tile show. Needs
 // `rays` and `march`.
 
+// The tile that this group marches.
+uint listedTile() {
+    uint tiles = march.pixels / (kMarchTileSide * kMarchTileSide);
+    return rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
+}
+
 // Stores what slab `s` adds to the light without it and those behind; where_: light, and its first
 // and second moment in the slab. The nearest slabs then compose to exactly what one ray would show.
 // Also stores the transmittance in front, which is the march pixel's weight among its neighbours.

@@ -20,7 +20,7 @@ void main() {
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
     uint tiles = march.pixels / (kMarchTileSide * kMarchTileSide);
-    uint tile = rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
+    uint tile = listedTile();
     uint slabs = march.slabs | zero, turns = march.turns | zero;
     uint all = slabs * turns;
     // Lanes of a quarter, or half, of the tile run the same number of iterations.
