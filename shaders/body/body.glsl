@@ -1,4 +1,4 @@
-// What the passes of bodies share. Heights are along the world's up.
+// Shared by the passes of bodies. Heights are along the world's up.
 #include "volume/flame.glsl"
 #include "shared/body.h"
 

@@ -66,7 +66,7 @@ void main() {
     float side = body.low.w * scale;
     float area = float(bodyCells[at + 7u]) * 1e-6, burns = float(bodyCells[at + 9u]) * 1e-6;
     one.radius = clamp(0.9 * sqrt(area), 0.35 * side, 1.1 * side);
-    // What burns around draws it, and draws it up.
+    // Its neighbours draw it, and draw it up.
     float near = 0.0, nearArea = 0.0, all = 0.0;
     vec3 middle = vec3(0.0);
     for (uint j = 0u; j < body.cells; ++j) {

@@ -70,7 +70,7 @@ TEST_F(Bodies, StandOnWhatBurnsAndOnlyThere) {
     EXPECT_LT(below, 0.02 * above) << "flames stand on their feet";
 }
 
-// What a texel adds follows from its age, not from reports.
+// A texel adds gas by its age, not by reports.
 TEST_F(Bodies, DoNotJumpWithTheSimulationsReports) {
     FwWorld* world = nullptr;
     makeFire(4096, &world);
