@@ -3,7 +3,7 @@
 // frame, not with the steps of the simulation.
 //
 // Words of a cell: 0 weight; 1..3 place, 4..6 normal (Q7), both times weight; 7 area that flames,
-// 1e-6 m^2; 8 W now, 9 W when fresh, both times 16.
+// 1e-6 m^2; 8 W, times 16; 9 that area, each texel by its strength.
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
 #include "shared/body.h"
@@ -21,6 +21,7 @@ const float kShows = 512.0, kWhole = 1400.0;
 void addTile(uint i) {
     BurnTile tile = burnTiles[i];
     uint number = bodyOf[tile.object];
+    if (!burnTileAlive(tile.object, tile.tile)) return;
     BurnObject object = objects[tile.object];
     uint worldTile = object.worldTileBase + tile.tile;
     if (number == 0u || (tileState[worldTile].flag & kTileFalling) != 0u) return;
@@ -37,12 +38,7 @@ void addTile(uint i) {
         float age = float(view.now - t) + view.ambientGround.w;
         BurnMaterial material =
             materials[tile.object * kMaterialsPerObject + (words.y >> 16u & 7u)];
-        float lasts = material.flameTicks == kNoneTexel ? 1e9 : float(material.flameTicks);
-        MaterialAppearance appearance = appearances[material.appearance];
-        // Thin materials burn at hole edges while the hole grows.
-        if (appearance.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (appearance.holeTime - 0.5 * appearance.holeVariation) * 4096.0 /
-                                   material.timeScale);
+        float lasts = flameLasts(material, object.flags);
         if (age >= lasts) continue;
         float f = smoothstep(kShows, kWhole, age) * (1.0 - smoothstep(0.75 * lasts, lasts, age)) *
                   flameFade(material, max(age - kShows, 0.0), 0.45);

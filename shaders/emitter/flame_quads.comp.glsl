@@ -60,14 +60,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (age < ago) continue;  // it caught later
         uint material =
             tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
-        MaterialAppearance appearance = appearances[materials[material].appearance];
-        float lasts = materials[material].flameTicks == kNoneTexel
-                          ? 1e9
-                          : float(materials[material].flameTicks);
-        // Thin materials burn at hole edges while the hole grows.
-        if (appearance.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (appearance.holeTime - 0.5 * appearance.holeVariation) * 4096.0 /
-                                   materials[material].timeScale);
+        float lasts = flameLasts(materials[material], object.flags);
         if (age >= lasts || age - ago >= 0.8 * lasts) continue;
         ++met;
         if (age - ago < foot.age) {
@@ -118,14 +111,14 @@ void main() {
         // Lifetimes are independent of the fire, so that changes do not shake all quads.
         float scale = sqrt(clamp(6.0 * tileSide(tile.object), 0.05, 3.0));
 
+        bool ofBody = bodyOf[tile.object] != 0u;
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
             MaterialAppearance mainAppearance =
                 appearances[materials[tile.object * kMaterialsPerObject].appearance];
             float odds = smoke ? min(0.10 * quads * mainAppearance.smoke, 0.5) :
                 min(quads / 3.0, 1.0);
-            bool body = !smoke && bodyOf[tile.object] != 0u;
-            if (body && (push.switches & kSwitchBodies) != 0u) continue;
+            if (ofBody && !smoke && (push.switches & kSwitchBodies) != 0u) continue;
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
             float period =
@@ -189,7 +182,7 @@ void main() {
                 quad.kelvin = 1.0 - a;
             }
             quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue) |
-                        (body ? kQuadOfBody : 0u);
+                        (ofBody && !smoke ? kQuadOfBody : 0u);
             // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame,
             // its foot at 1/20.
             uint flipbook = push.count >> (smoke ? 8u : 0u) & 0xFFu;

@@ -1,6 +1,6 @@
-// The fire of a burning object as one body: each cell of its mesh (mesh::BurnDomain::flameCells) has
-// the flame of the texels that burn in it. Their gas adds up, and fire stands where there is enough of it: flames
-// side by side melt into one, and a dying flame sinks into its surface.
+// The fire of a burning object as one body: each cell of its mesh (mesh::BurnDomain::flameCells)
+// has the flame of the texels that burn in it. Their gas adds up, and fire stands where there is
+// enough of it: flames side by side melt into one, and a dying flame sinks into its surface.
 // clang-format off
 #ifndef FW_SHARED_BODY_H
 #define FW_SHARED_BODY_H

@@ -29,11 +29,14 @@ void add(uint at, float weight, float cut, inout vec4 color, inout float through
 
 void main() {
     outColor = vec4(0.0);
+#ifdef FW_BODY
+    gl_FragDepth = gl_FragCoord.z;
+#endif
     bool elsewhere = all(greaterThan(vPixel + 0.5, draw.window.xy)) &&
                      all(lessThan(vPixel + 0.5, draw.window.zw));
     if (elsewhere ||
         !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), vShows.x, vShows.y))
-        discard;
+        return;
     uint pitch = kMarchPixelWords * kMarchTileSide * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0, cut = slabsToCut() + draw.nearer * vSlab.y;
