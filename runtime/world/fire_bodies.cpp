@@ -11,10 +11,13 @@ namespace {
 
 using gpu::vec3;
 
-constexpr float kSquareMetre = 1.5f;  // cells whose power a flame has, in the open
-constexpr float kMostCells = 8.0f;    // and at most
+constexpr float kMeanCells = 1.5f;  // whose power raises a flame
+constexpr float kMostCells = 8.0f;
 
-float heightOf(float watts) noexcept { return 0.235f * std::pow(watts * 1e-3f, 0.4f); }
+// m, of one flame of the body, at the power of a point.
+float heightOf(float watts) noexcept {
+    return gpu::kBodyAlone * volume::flameHeight(watts * 1e-3f, 0);
+}
 
 gpu::FlameRecord lookOf(float side, float height, uint32_t seed) noexcept {
     gpu::FlameRecord r{};
@@ -38,16 +41,13 @@ gpu::FlameRecord lookOf(float side, float height, uint32_t seed) noexcept {
 
 uint32_t FireBodies::write(const WorldContext& context, const Scene& scene, const WindSystem& wind,
                            float seconds, std::span<gpu::VolumeFlame> out) noexcept {
-    const auto isSame = [](FwBurnableMeshId a, FwBurnableMeshId b) {
-        return a.index1 == b.index1 && a.generation == b.generation;
-    };
     for (uint32_t i = 0; i < count_; ++i) bodies_[i].burns = false;
     uint32_t written = 0;
     const auto room = uint32_t(std::min<size_t>(out.size(), gpu::kMaxBodies));
     for (const Object* object : scene.touched) {
         if (object->counters.burning == 0 || written == room) continue;
         Body* body = std::find_if(bodies_.begin(), bodies_.begin() + count_,
-                                  [&](const Body& one) { return isSame(one.object, object->id); });
+                                  [&](const Body& one) { return same(one.object, object->id); });
         if (body == bodies_.begin() + count_) {
             if (count_ == bodies_.size()) continue;
             *body = {object->id, {}, true};
@@ -64,14 +64,13 @@ uint32_t FireBodies::write(const WorldContext& context, const Scene& scene, cons
         const float texel = domain.texelSide * pose.scale;
         const float all = perArea * texel * texel * float(object->counters.burning);
         const float cell = perArea * side * side;
-        const float height = std::max(gpu::kBodyAlone * heightOf(kSquareMetre * cell), 0.5f * side);
+        const float height = std::max(heightOf(kMeanCells * cell), 0.5f * side);
         gpu::VolumeFlame& flame = out[written];
         flame.record = lookOf(side, height, object->id.index1);
         gpu::FlameRecord& record = flame.record;
         // Where its flames may be.
         const float rises =
-            gpu::kBodyTop *
-            std::max(gpu::kBodyAlone * heightOf(std::min(all, kMostCells * cell)), 0.3f * side);
+            gpu::kBodyTop * std::max(heightOf(std::min(all, kMostCells * cell)), 0.3f * side);
         float middle[3];
         middleOf(domain, middle);
         float place[3];

@@ -24,15 +24,16 @@ void moveState(components::FireState& state, const double (&by)[3]) noexcept {
 FlameSystem::FlameSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
                          const ExchangeSystem& exchange, BurnSystem& burn)
     : context_(context), scene_(scene), wind_(wind), exchange_(exchange), burn_(burn) {
-    reserve(0);
+    if (context_.backend.draws()) reserve(0);
 }
 
 void FlameSystem::reserve(uint32_t more) {
     size_t flames = more;
     for (auto [i, fire] : fires_.entries()) flames += fire.data.partCount;
     const size_t room = burning_.reserveFlames(flames);
-    if (flames_.size() < std::min<size_t>(room + gpu::kMaxBodies, gpu::kMaxVolumeFlames))
-        flames_.resize(std::min<size_t>(room + gpu::kMaxBodies, gpu::kMaxVolumeFlames));
+    const size_t bodies = context_.backend.draws() ? gpu::kMaxBodies : 0;
+    const size_t records = std::min<size_t>(room + bodies, gpu::kMaxVolumeFlames);
+    if (flames_.size() < records) flames_.resize(records);
     shapes_.reserve(kMaxShapes);
 }
 
@@ -188,10 +189,6 @@ void FlameSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
         }
         burning_.advance(air, frame.seconds);
         count = burning_.write(flames_);
-        for (uint32_t i = 0; i < count; ++i) {
-            uint32_t& octaves = flames_[i].record.octaves;
-            octaves = std::min(octaves, context_.def.volumeOctaves);
-        }
     }
     uint32_t bodies = 0;
     // Where flipbooks show flames, or nothing does, there are none.
@@ -199,6 +196,8 @@ void FlameSystem::plan(const HostFrame& frame, gpu::FramePlan& plan) noexcept {
         bodies = bodies_.write(context_, scene_, wind_, frame.seconds,
                                std::span(flames_).subspan(count));
     FW_ASSERT(count + bodies <= flames_.size(), "%u of %zu flames", count, flames_.size());
+    for (gpu::VolumeFlame& flame : std::span(flames_).first(count + bodies))
+        flame.record.octaves = std::min(flame.record.octaves, context_.def.volumeOctaves);
     update_ = {flames_.data(), count + bodies, bodies_.records(), bodies};
     if (fires_.live() > 0 || shown_ > 0 || bodies > 0) plan.volumes = &update_;
 }
