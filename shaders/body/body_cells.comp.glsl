@@ -14,9 +14,9 @@ FW_READ(BODIES) FW_READ(BODY_OF) FW_READ(FLAME_CELLS) FW_READ_WRITE(BODY_CELLS) 
 #include "lib/tile.glsl"
 #include "lib/skin.glsl"
 
-// Ticks from a texel's ignition until its flame shows, and is whole: tiles are listed late by up to
-// the first.
-const float kShows = 512.0, kWhole = 1400.0;
+// Ticks from a texel's ignition until its flame shows, and is whole, but no more than these shares of
+// its duration. Tiles are listed late by up to the first.
+const float kShows = 512.0, kWhole = 1400.0, kShowsOf = 0.1, kWholeOf = 0.4;
 
 void addTile(uint i) {
     BurnTile tile = burnTiles[i];
@@ -40,8 +40,9 @@ void addTile(uint i) {
             materials[tile.object * kMaterialsPerObject + (words.y >> 16u & 7u)];
         float lasts = flameLasts(material, object.flags);
         if (age >= lasts) continue;
-        float f = smoothstep(kShows, kWhole, age) * (1.0 - smoothstep(0.75 * lasts, lasts, age)) *
-                  flameFade(material, max(age - kShows, 0.0), 0.45);
+        float shows = min(kShows, kShowsOf * lasts), whole = min(kWhole, kWholeOf * lasts);
+        float f = smoothstep(shows, whole, age) * (1.0 - smoothstep(0.75 * lasts, lasts, age)) *
+                  flameFade(material, max(age - shows, 0.0), 0.45);
         place += f * vec3(words.x & 0xFFFFu, words.x >> 16u, words.y & 0xFFFFu);
         normal += f * vec3(decodeNormal(normals[object.texelBase + texel])) * (1.0 / 16384.0);
         fire += f;
